@@ -8,7 +8,7 @@ namespace tactus::bone {
 
 namespace {
 
-constexpr double least_of_bone = 100.0, common_for_bone = 300.0;  // HU
+constexpr double min_of_bone = 100.0, common_for_bone = 300.0;  // HU
 
 }  // namespace
 
@@ -28,7 +28,7 @@ CtThreshold suggested_threshold(const volume::Histogram& histogram, volume::HuKi
     const bool masked = hu == volume::HuKind::masked;
     const double value = volume::suggested_threshold(histogram, masked);
     // Where bone is rare or absent the second split lies between soft tissues.
-    if (hu == volume::HuKind::calibrated && value < least_of_bone)
+    if (hu == volume::HuKind::calibrated && value < min_of_bone)
         return {common_for_bone, "common for bone; the values alone do not tell it from soft tissue", common_for_bone};
     const bool is_wide = histogram.high - histogram.low > 200.0;
     return {is_wide ? std::round(value) : value,

@@ -23,7 +23,7 @@ namespace tactus::bone {
 
 namespace {
 
-constexpr double most_ct_voxels = 4e9;  // read in layers, never all in memory
+constexpr double max_ct_voxels = 4e9;  // read in layers, never all in memory
 
 double volume_mm3(const Vec3& spacing) { return spacing.x * spacing.y * spacing.z / (mm * mm * mm); }
 
@@ -63,7 +63,7 @@ volume::Grid ct_layout(const volume::Grid& ct, const Range& crop, std::optional<
         layout.origin[axis] = low;
         layout.size[a] = static_cast<int>(steps) + 1;
     }
-    check_layout(layout, most_ct_voxels);
+    check_layout(layout, max_ct_voxels);
     return layout;
 }
 

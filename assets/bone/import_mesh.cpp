@@ -28,7 +28,7 @@ namespace tactus::bone {
 
 namespace {
 
-constexpr double most_mesh_voxels = 4e8;
+constexpr double max_mesh_voxels = 4e8;
 
 struct Unit {
     double metres;
@@ -216,7 +216,7 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     report(0.0, "reading");
     const ReadMesh read = read_mesh(options, summary);
     const volume::Grid layout = layout_of(read.mesh, options.spacing);
-    check_layout(layout, most_mesh_voxels);
+    check_layout(layout, max_mesh_voxels);
     report(0.3, "distance");
     Bone bone;
     bone.distance = volume::signed_distance(layout, read.mesh, options.run);
@@ -242,7 +242,7 @@ volume::Grid distance_of_mesh(const MeshPart& part) {
     const ReadMesh read = read_mesh(options, ignored);
     volume::Grid layout = layout_of(read.mesh, {}, part.is_coarse ? 2.0 : 1.0);
     if (part.within) layout = part_of(layout, *part.within);
-    check_layout(layout, most_mesh_voxels);
+    check_layout(layout, max_mesh_voxels);
     constexpr double sampled = 3.0;  // voxels: what the smoothed gradient of a place on the surface takes in
     return part.is_surface_only ? volume::signed_distance_near(layout, read.mesh, sampled * layout.spacing.x, part.run)
                                 : volume::signed_distance(layout, read.mesh, part.run);

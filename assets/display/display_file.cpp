@@ -17,7 +17,7 @@ namespace tactus::display {
 
 namespace {
 
-constexpr std::size_t most_screens = 64;
+constexpr std::size_t max_screens = 64;
 
 class DisplayReader : file::TomlFile {
 public:
@@ -37,8 +37,8 @@ public:
         if (!screens || !screens->is_array() || screens->as_array()->empty())
             throw Error({this->file(), 0, 0},
                         "a display needs at least one [[screens]] with low_left, low_right, high_left");
-        if (screens->as_array()->size() > most_screens)
-            fail(*screens, fmt::format("a display has {} screens at most", most_screens));
+        if (screens->as_array()->size() > max_screens)
+            fail(*screens, fmt::format("a display has {} screens at most", max_screens));
         for (const toml::node& node : *screens->as_array()) read_screen(node, file);
         return file;
     }

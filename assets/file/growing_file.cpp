@@ -17,7 +17,7 @@ namespace tactus::file {
 
 namespace {
 
-constexpr std::size_t most_waiting = 1 << 12;  // bytes
+constexpr std::size_t max_waiting = 1 << 12;  // bytes
 
 }  // namespace
 
@@ -56,7 +56,7 @@ void GrowingFile::append(std::string_view record) {
     if (has_failed_) return;
     waiting_ += record;
     ends_.push_back(waiting_.size());
-    if (waiting_.size() >= most_waiting) flush();
+    if (waiting_.size() >= max_waiting) flush();
 }
 
 void GrowingFile::flush() {

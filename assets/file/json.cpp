@@ -14,7 +14,7 @@ namespace {
 using Library = nlohmann::ordered_json;
 
 /// Deeper text is no file of ours, and values are freed recursively.
-constexpr std::size_t most_nested = 100;
+constexpr std::size_t max_nested = 100;
 
 /// Characters of a text for the parser, which reports no lines: counts those that it has read. The parser reads no
 /// character behind a name or an opening bracket before it reports it.
@@ -90,8 +90,8 @@ private:
     }
     /// A value that is open gets no sibling: its address stays.
     bool open(Json value) {
-        if (open_.size() == most_nested)
-            throw JsonSyntaxError(fmt::format("values nest more than {} deep", most_nested), 0);
+        if (open_.size() == max_nested)
+            throw JsonSyntaxError(fmt::format("values nest more than {} deep", max_nested), 0);
         value.set_line(line_);
         open_.push_back(&place(std::move(value)));
         return true;

@@ -27,7 +27,7 @@ bool is_still_there(int handle, const std::filesystem::path& file) {
 
 PartLock::PartLock(const std::filesystem::path& part, const std::filesystem::path& path) {
     // Some file systems report a new inode number on each call; locks cannot work there.
-    constexpr int most_tries = 100;
+    constexpr int max_tries = 100;
     for (int n = 1;; ++n) {
         handle_ = ::open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (handle_ < 0) throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
@@ -40,7 +40,7 @@ PartLock::PartLock(const std::filesystem::path& part, const std::filesystem::pat
                             path.string()));
         }
         // Other failures mean a file system without locks.
-        if (code != 0 || n == most_tries || is_still_there(handle_, part)) return;
+        if (code != 0 || n == max_tries || is_still_there(handle_, part)) return;
         ::close(handle_);
     }
 }

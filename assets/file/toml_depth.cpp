@@ -37,7 +37,7 @@ std::optional<std::size_t> overlong_key(std::string_view toml) {
             continue;
         }
         if (c == '.') {
-            if (++dots > most_dots_in_key) return at;
+            if (++dots > max_dots_in_key) return at;
         } else if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-' && c != ' ' && c != '\t') {
             dots = 0;
         }

@@ -9,7 +9,7 @@
 namespace tactus::file {
 
 /// Maximum number of dots in a key. The file formats of this program need at most two, as in [nodes.hand].
-inline constexpr int most_dots_in_key = 32;
+inline constexpr int max_dots_in_key = 32;
 
 /// Offset of the first dot beyond the limit, if any. Dots in strings and comments do not count.
 std::optional<std::size_t> overlong_key(std::string_view toml);

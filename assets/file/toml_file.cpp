@@ -25,7 +25,7 @@ TomlTable parse_toml(std::string_view text, const std::string& file) {
         const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is the start of the text
         throw Error(
             {file, 1 + static_cast<int>(std::ranges::count(before, '\n')), 1 + static_cast<int>(*offset - line_start)},
-            fmt::format("a key has at most {} dots", most_dots_in_key));
+            fmt::format("a key has at most {} dots", max_dots_in_key));
     }
     try {
         return TomlTable(new toml::table(toml::parse(text, file)));

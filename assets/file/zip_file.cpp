@@ -18,9 +18,9 @@ namespace tactus::file {
 
 namespace {
 
-constexpr std::uint64_t most_entries = 100'000;
-constexpr std::uint64_t longest_list = most_entries * 512;  // bytes of the central directory
-constexpr std::uint64_t most_bytes = std::uint64_t{64} << 30;  // all files together, unpacked
+constexpr std::uint64_t max_entries = 100'000;
+constexpr std::uint64_t longest_list = max_entries * 512;  // bytes of the central directory
+constexpr std::uint64_t max_bytes = std::uint64_t{64} << 30;  // all files together, unpacked
 constexpr double deflate_limit = 1032.0;                       // most that deflate packs
 
 std::uint64_t little_endian(std::string_view bytes, std::size_t at, std::size_t size) {
@@ -42,7 +42,7 @@ void check_list(const std::filesystem::path& path, std::uint64_t size) {
     const auto refuse = [&](std::uint64_t length) {
         if (length > longest_list)
             throw Error(fmt::format("{}: its list of files has {} bytes; a zip may hold at most {} files",
-                                    path.string(), length, most_entries));
+                                    path.string(), length, max_entries));
     };
     constexpr std::string_view end_mark("PK\5\6", 4), wide_mark("PK\6\7", 4);
     for (std::size_t at = tail.find(end_mark); at != std::string::npos; at = tail.find(end_mark, at + 1)) {
@@ -91,8 +91,8 @@ ZipFile::ZipFile(const std::filesystem::path& path) : path_(path.string()) {
     }
     zip_t* const archive = static_cast<zip_t*>(archive_.get());
     const zip_int64_t count = zip_get_num_entries(archive, 0);
-    if (count > static_cast<zip_int64_t>(most_entries))
-        throw Error(fmt::format("{}: has {} files; a zip may hold at most {}", path_, count, most_entries));
+    if (count > static_cast<zip_int64_t>(max_entries))
+        throw Error(fmt::format("{}: has {} files; a zip may hold at most {}", path_, count, max_entries));
     std::uint64_t all_packed = 0, all = 0;
     for (zip_uint64_t n = 0; n < static_cast<zip_uint64_t>(count); ++n) {
         zip_stat_t stat;
@@ -109,14 +109,14 @@ ZipFile::ZipFile(const std::filesystem::path& path) : path_(path.string()) {
             refuse("is not packed by deflate; unpack it first");
         // Damaged, or made to fill a memory: packed bytes that several files share, or sizes that nothing unpacks to.
         if (double(stat.size) > deflate_limit * double(stat.comp_size) + 1024.0 || stat.comp_size > packed ||
-            stat.size > most_bytes)
+            stat.size > max_bytes)
             refuse(fmt::format("claims {} bytes from {}, which is not possible", stat.size, stat.comp_size));
         all_packed += stat.comp_size;
         all += stat.size;
         if (all_packed > packed) refuse("shares its bytes with others");
-        if (all > most_bytes)
+        if (all > max_bytes)
             throw Error(
-                fmt::format("{}: holds more than {} GiB; give a zip of one examination", path_, most_bytes >> 30));
+                fmt::format("{}: holds more than {} GiB; give a zip of one examination", path_, max_bytes >> 30));
         entries_.push_back({path_ + "/" + clean(stat.name ? stat.name : ""), stat.size, n});
     }
 }

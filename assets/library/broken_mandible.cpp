@@ -73,7 +73,7 @@ double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint
     struct Covered {
         std::size_t near = 0, touching = 0;
     };
-    constexpr std::size_t least_touching = 40;  // smallest face that the matcher accepts, points
+    constexpr std::size_t min_touching = 40;  // smallest face that the matcher accepts, points
     std::map<std::pair<std::size_t, std::size_t>, Covered> covered;
     for (const FacePoint& p : piece) {
         const FacePoint& other = standing[tree.nearest(p.position)];
@@ -85,7 +85,7 @@ double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint
     }
     double most = 0.0;
     for (const auto& [pair, points] : covered) {
-        if (points.touching < least_touching) continue;
+        if (points.touching < min_touching) continue;
         const auto whole = static_cast<double>(std::ranges::count(piece, pair.first, &FacePoint::face));
         most = std::max(most, static_cast<double>(points.near * points.near) / whole);
     }

@@ -20,9 +20,9 @@ namespace tactus::plan {
 namespace {
 
 constexpr double slab = 4e-3;        // m: thickness of the layer around the fracture that follows its relief
-constexpr double least_share = 0.2;  // smallest share of a piece's volume on each side of its fracture
+constexpr double min_share = 0.2;  // smallest share of a piece's volume on each side of its fracture
 constexpr int attempts = 40;
-constexpr std::size_t least_samples = 500;
+constexpr std::size_t min_samples = 500;
 
 std::array<int, 3> place(const volume::Grid& grid, std::size_t n) {
     const auto nx = static_cast<std::size_t>(grid.size[0]), ny = static_cast<std::size_t>(grid.size[1]);
@@ -149,7 +149,7 @@ std::optional<Split> follow(const volume::Grid& solid, const Crack& crack, std::
         if (through) return std::nullopt;
     }
     const double share = static_cast<double>(volume) / static_cast<double>(inside);
-    if (share < least_share || share > 1.0 - least_share || split.surface.empty()) return std::nullopt;
+    if (share < min_share || share > 1.0 - min_share || split.surface.empty()) return std::nullopt;
     for (std::size_t n = 0; n < state.size(); ++n) {
         if (!std::isnan(split.side[n]) || !(solid.values[n] < band)) continue;
         split.side[n] = static_cast<float>(state[n] == behind ? -slab : slab);
@@ -256,7 +256,7 @@ std::vector<volume::Grid> break_bone(const volume::Grid& distance, const BreakOp
         throw Error("the roughness must be between 0 and 5 mm");
     if (!(options.chip_depth > 0.0 && options.chip_depth < 10e-3))
         throw Error("chips must be between 0 and 10 mm deep");
-    if (samples_inside(distance) < least_samples * static_cast<std::size_t>(options.pieces))
+    if (samples_inside(distance) < min_samples * static_cast<std::size_t>(options.pieces))
         throw Error(fmt::format("the bone has {} samples inside, too few for {} pieces; use smaller voxels",
                                 samples_inside(distance), options.pieces));
     std::vector<volume::Grid> pieces{cropped(distance)};

@@ -171,7 +171,7 @@ PlanState as_scanned(const CasePlan& plan) {
     std::vector<HashedFile> files;
     for (const PlanFragment& fragment : plan.fragments) files.push_back({fragment.file, fragment.hash});
     return {arrangement,
-            std::vector<std::string>(arrangement.most_groups()),
+            std::vector<std::string>(arrangement.max_groups()),
             std::vector<std::optional<PlanFit>>(plan.fragments.size()),
             std::nullopt,
             {},

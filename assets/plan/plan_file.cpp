@@ -23,7 +23,7 @@ namespace {
 using file::Json;
 
 constexpr std::string_view format_name = "tactus plan";
-constexpr std::size_t most_fragments = 1000;
+constexpr std::size_t max_fragments = 1000;
 
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
@@ -217,7 +217,7 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
 
 void read_fragments(CasePlan& plan, const Item& top) {
     const Json& list = top.list("fragments");
-    if (list.size() > most_fragments) top.fail(fmt::format("has more than {} fragments", most_fragments));
+    if (list.size() > max_fragments) top.fail(fmt::format("has more than {} fragments", max_fragments));
     std::set<std::string> names;
     for (std::size_t n = 0; n < list.size(); ++n) {
         const Item item = top.item("fragments", list[n], n);

@@ -34,7 +34,7 @@ std::vector<double> roughness_of(std::span<const contact::SurfacePoint> points, 
 
 /// Labels the connected patches of broken points that are large enough, and nothing else. Those as scanned stay so.
 std::size_t label_patches(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken, double near,
-                          double least_area) {
+                          double min_area) {
     contact::remove_paint(points);
     const auto is_broken = [&](std::size_t i) {
         return broken[i] != 0 && points[i].label != contact::surface_label::as_scanned;
@@ -43,7 +43,7 @@ std::size_t label_patches(std::span<contact::SurfacePoint> points, const std::ve
     for (const auto& patch : geometry::patches_of(points, near, is_broken)) {
         double area = 0.0;
         for (const std::size_t i : patch) area += points[i].area;
-        if (area < least_area) continue;
+        if (area < min_area) continue;
         for (const std::size_t i : patch) points[i].label = contact::surface_label::fracture;
         count += patch.size();
     }
@@ -82,7 +82,7 @@ std::size_t propose_fracture(std::span<contact::SurfacePoint> points, const Prop
         std::nth_element(nearby.begin(), middle, nearby.end());
         broken[i] = *middle > options.roughness;
     }
-    return label_patches(points, broken, options.near, options.least_area);
+    return label_patches(points, broken, options.near, options.min_area);
 }
 
 std::size_t propose_facing(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
@@ -97,7 +97,7 @@ std::size_t propose_facing(std::span<contact::SurfacePoint> points, std::span<co
         faces[i] = away < options.reach && glm::dot(p.normal, q.normal) < looks_back &&
                    (away < touching || glm::dot(p.normal, way) > ahead * away);
     }
-    return label_patches(points, faces, patch_gap(points), options.least_area);
+    return label_patches(points, faces, patch_gap(points), options.min_area);
 }
 
 std::vector<std::uint8_t> broken_inside(std::span<const contact::SurfacePoint> points,
@@ -126,13 +126,13 @@ std::vector<std::uint8_t> broken_inside(std::span<const contact::SurfacePoint> p
 }
 
 std::size_t label_broken(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken,
-                         double least_area) {
-    return label_patches(points, broken, patch_gap(points), least_area);
+                         double min_area) {
+    return label_patches(points, broken, patch_gap(points), min_area);
 }
 
 std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
                            const Pose& place, const IntactOptions& options) {
-    return label_broken(points, broken_inside(points, intact, place, options), options.least_area);
+    return label_broken(points, broken_inside(points, intact, place, options), options.min_area);
 }
 
 std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
@@ -151,13 +151,13 @@ std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span
     return count;
 }
 
-std::size_t drop_small_faces(std::span<contact::SurfacePoint> points, double least_area) {
+std::size_t drop_small_faces(std::span<contact::SurfacePoint> points, double min_area) {
     const auto labelled = [&] {
         return static_cast<std::size_t>(
             std::ranges::count(points, contact::surface_label::fracture, &contact::SurfacePoint::label));
     };
     std::size_t left = labelled();
-    if (!(least_area > 0.0)) return left;
+    if (!(min_area > 0.0)) return left;
     // Without a small face its neighbours may be split otherwise.
     for (int round = 0; round < 5; ++round) {
         const auto faces = fit::split_faces(points);
@@ -166,7 +166,7 @@ std::size_t drop_small_faces(std::span<contact::SurfacePoint> points, double lea
         for (const auto& face : faces) {
             double area = 0.0;
             for (const std::size_t n : face) area += points[n].area;
-            if (area < least_area) continue;
+            if (area < min_area) continue;
             for (const std::size_t n : face) points[n].label = contact::surface_label::fracture;
         }
         const std::size_t now = labelled();

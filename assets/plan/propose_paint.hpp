@@ -16,7 +16,7 @@ struct ProposalOptions {
     double near = 1.5e-3;      ///< m: radius for the roughness of a point
     double smooth = 3.0e-3;    ///< m: radius for the median over neighbours
     double roughness = 0.06;   ///< threshold of roughness (mean of 1 − cos of the angle between normals)
-    double least_area = 20e-6;  ///< m², smaller patches are dropped
+    double min_area = 20e-6;  ///< m², smaller patches are dropped
 };
 
 /// Labels rough patches: broken bone is rougher at the scale of 1 to 2 mm than natural bone surface, which curves over
@@ -26,7 +26,7 @@ std::size_t propose_fracture(std::span<contact::SurfacePoint> points, const Prop
 
 struct FacingOptions {
     double reach = 10e-3;      ///< m: largest distance to the other fragment, as scanned
-    double least_area = 20e-6;  ///< m², smaller patches are dropped
+    double min_area = 20e-6;  ///< m², smaller patches are dropped
 };
 
 /// Labels the points that face points of another fragment at a small distance. This works because fragments in one scan
@@ -41,7 +41,7 @@ struct IntactOptions {
     double askew = 0.7e-3;  ///< m: points deeper than this are also broken if their normal differs from the bone's,
     double looks_along = 0.3;  ///< that is, if the cosine between the normals is below this
     double smooth = 3e-3;  ///< m: radius for the median over neighbours
-    double least_area = 50e-6;  ///< m², smaller patches are dropped
+    double min_area = 50e-6;  ///< m², smaller patches are dropped
 };
 
 /// Labels the points well inside the unbroken bone (the mirrored healthy side, or an earlier scan) registered to the
@@ -56,15 +56,15 @@ std::vector<std::uint8_t> broken_inside(std::span<const contact::SurfacePoint> p
                                         const fit::RegistrationTarget& intact, const Pose& place,
                                         const IntactOptions& options = {});
 std::size_t label_broken(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken,
-                         double least_area);
+                         double min_area);
 
 /// Removes the label of patches without a point within `reach` (m) of the other fragment, as scanned. Returns the
 /// number of points that keep their label. Throws Error if `other` has no points.
 std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
                               double reach);
 
-/// Removes the label of faces (see fit::split_faces) smaller than `least_area` (m²), and of labelled points that belong
+/// Removes the label of faces (see fit::split_faces) smaller than `min_area` (m²), and of labelled points that belong
 /// to no face. With 0, does nothing. Returns the number of points that stay labelled.
-std::size_t drop_small_faces(std::span<contact::SurfacePoint> points, double least_area);
+std::size_t drop_small_faces(std::span<contact::SurfacePoint> points, double min_area);
 
 }  // namespace tactus::plan

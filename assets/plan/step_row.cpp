@@ -19,7 +19,7 @@ const std::array<std::string_view, step_row_columns> step_row_names{
 
 namespace {
 
-constexpr double most_lost = 1000.0;  // lost steps tolerated before a row counts as invalid
+constexpr double max_lost = 1000.0;  // lost steps tolerated before a row counts as invalid
 
 int whole(double value, double low, double high, const char* what) {
     if (!(value >= low && value <= high) || value != std::floor(value))
@@ -99,7 +99,7 @@ void RunSteps::switch_to(double place) {
 void RunSteps::drop(double place) {
     const int n = whole(place, 0.0, static_cast<double>(plan_.alternatives.size()) - 1.0, "alternative");
     if (n == plan_.current) throw Error("steps of the run: the current alternative is not dropped");
-    if (dropped_.size() == most_dropped) dropped_.erase(dropped_.begin());
+    if (dropped_.size() == max_dropped) dropped_.erase(dropped_.begin());
     dropped_.push_back(plan_.alternatives[static_cast<std::size_t>(n)]);
     plan_.alternatives.erase(plan_.alternatives.begin() + n);
     plan_.current -= n < plan_.current;
@@ -128,7 +128,7 @@ void RunSteps::add(const StepRow& row, double second) {
     if (row.kind == row_drop) return drop(row.after);
     if (row.kind == row_undrop) return undrop();
     const auto next = static_cast<double>(numbers_.size());
-    numbers_.resize(static_cast<std::size_t>(whole(row.step, next, next + most_lost, "number of the next step")),
+    numbers_.resize(static_cast<std::size_t>(whole(row.step, next, next + max_lost, "number of the next step")),
                     plan_.place().head);
     rows_.push_back(row);
     if (row.left > 0.0) return;

@@ -16,9 +16,9 @@ namespace tactus::plan {
 inline constexpr int row_goes_to = 100;
 /// Row kinds for alternatives; `after` is an index in the plan's list of alternatives. row_alternative: switches to it,
 /// or, with the number of alternatives, starts another one at the current state. row_drop: removes it. row_undrop:
-/// restores the one removed last; of more than `most_dropped` the oldest cannot be restored.
+/// restores the one removed last; of more than `max_dropped` the oldest cannot be restored.
 inline constexpr int row_alternative = 101, row_drop = 102, row_undrop = 103;
-inline constexpr std::size_t most_dropped = 32;
+inline constexpr std::size_t max_dropped = 32;
 
 /// One fragment of one step. The rows of a step are consecutive.
 struct StepRow {

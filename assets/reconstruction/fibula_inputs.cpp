@@ -64,18 +64,18 @@ Vec3 vector_of(const Json& json, const char* key, const std::string& where) {
     return *v;
 }
 
-double length_of(const Json& json, const char* key, double otherwise, double most_mm, const std::string& file) {
+double length_of(const Json& json, const char* key, double otherwise, double max_mm, const std::string& file) {
     const Json* found = json.find(key);
     if (!found) return otherwise;
     const double value = found->is_number() ? found->get<double>() : -1.0;
-    if (!(value >= 0.0 && value <= most_mm))
-        throw Error(fmt::format("{}: '{}' must be a number from 0 to {:.0f}", file, key, most_mm));
+    if (!(value >= 0.0 && value <= max_mm))
+        throw Error(fmt::format("{}: '{}' must be a number from 0 to {:.0f}", file, key, max_mm));
     return value * mm;
 }
 
 std::vector<JawPlane> planes_of(const Json& planes, const std::string& file) {
-    if (planes.size() < 2 || planes.size() > most_planes)
-        throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), most_planes));
+    if (planes.size() < 2 || planes.size() > max_planes)
+        throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), max_planes));
     std::vector<JawPlane> found;
     const std::vector<std::string> names{"name", "origin", "normal", "x", "y"};
     for (const Json& one : planes) {

@@ -12,7 +12,7 @@
 namespace tactus::reconstruction {
 
 inline constexpr double farthest_mm = 1e5;  // maximum magnitude of a coordinate in a file
-inline constexpr std::size_t most_planes = 6;
+inline constexpr std::size_t max_planes = 6;
 
 /// Reads
 ///     {"units": "mm", "mandible_planes": [{"name": "left", "origin": [x, y, z], "normal": [...], "y": [...]}, ...],

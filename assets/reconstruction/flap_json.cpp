@@ -23,7 +23,7 @@ namespace {
 using file::json_of;
 
 constexpr double farthest = 100.0;  // m
-constexpr std::size_t most_points = 10000, most_things = 100;
+constexpr std::size_t max_points = 10000, max_things = 100;
 
 Json json_of(const std::vector<Vec3>& all) {
     Json list = Json::array();
@@ -50,16 +50,16 @@ Plate plate_of(const Members& item) {
     Plate plate{item.name(),
                 item.positive("width", usual.width),
                 item.positive("thickness", usual.thickness),
-                item.places("points", most_points),
-                item.directions("outward", most_points),
+                item.places("points", max_points),
+                item.directions("outward", max_points),
                 {}};
     if (plate.points.size() < 2) item.fail("needs at least two points");
     if (plate.outward.size() != plate.points.size()) item.fail("needs a direction 'outward' for each point");
-    for (const Members& screw : item.list("screws", most_things)) plate.screws.push_back(screw_of(screw));
+    for (const Members& screw : item.list("screws", max_things)) plate.screws.push_back(screw_of(screw));
     if (const std::optional<Members> laid = item.object("laid")) {
         laid->know({"screws_per_segment"}, {"height"});
         const double screws = laid->number("screws_per_segment");
-        if (!(screws >= 0.0 && screws <= static_cast<double>(most_things) && screws == std::floor(screws)))
+        if (!(screws >= 0.0 && screws <= static_cast<double>(max_things) && screws == std::floor(screws)))
             item.fail("has 'screws_per_segment' that is no whole number from 0 to 100");
         plate.laid = {laid->length("height"), static_cast<int>(screws)};
     }
@@ -235,10 +235,10 @@ std::optional<Members> Members::object(std::string_view key) const {
 std::vector<FlapVessel> vessels_in(const Members& all) {
     std::vector<FlapVessel> vessels;
     const FlapVessel usual;
-    for (const Members& item : all.list("vessels", most_things)) {
+    for (const Members& item : all.list("vessels", max_things)) {
         item.know({"name", "kind", "file"}, {"radius", "points"});
         vessels.push_back(
-            {item.name(), kind_of(item), item.positive("radius", usual.radius), item.places("points", most_points)});
+            {item.name(), kind_of(item), item.positive("radius", usual.radius), item.places("points", max_points)});
         if (vessels.back().points.size() < 2) item.fail("needs at least two points");
     }
     check_names(all, vessels, "vessels");
@@ -262,17 +262,17 @@ Json json_of(const std::vector<FlapVessel>& vessels) {
 Flap flap_of(const Members& all) {
     Flap flap;
     flap.vessels = vessels_in(all);
-    for (const Members& item : all.list("perforators", most_things)) {
+    for (const Members& item : all.list("perforators", max_things)) {
         item.know({"name"}, {"at"});
         flap.perforators.push_back({item.name(), item.place("at")});
     }
-    for (const Members& item : all.list("sites", most_things)) {
+    for (const Members& item : all.list("sites", max_things)) {
         item.know({"name", "kind"}, {"at"});
         flap.sites.push_back({item.name(), kind_of(item), item.place("at")});
     }
-    for (const Members& item : all.list("plates", most_things)) flap.plates.push_back(plate_of(item));
+    for (const Members& item : all.list("plates", max_things)) flap.plates.push_back(plate_of(item));
     const DentalImplant implant;
-    for (const Members& item : all.list("implants", most_things)) {
+    for (const Members& item : all.list("implants", max_things)) {
         item.know({"name", "axis"}, {"head", "diameter", "length"});
         flap.implants.push_back({item.name(), item.place("head"), item.direction("axis"),
                                  item.positive("diameter", implant.diameter), item.positive("length", implant.length)});

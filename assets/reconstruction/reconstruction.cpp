@@ -73,7 +73,7 @@ double not_negative(const Members& item, const char* key) {
 
 FibulaInputs inputs_of(const Members& item) {
     FibulaInputs inputs;
-    for (const Members& plane : item.list("planes", most_planes)) {
+    for (const Members& plane : item.list("planes", max_planes)) {
         inputs.planes.push_back({plane.place("origin"), {}, {}});
         if (plane.has("normal")) inputs.planes.back().normal = plane.direction("normal");
         if (plane.has("y")) inputs.planes.back().y = plane.direction("y");
@@ -90,7 +90,7 @@ FibulaInputs inputs_of(const Members& item) {
     inputs.distal_margin = not_negative(item, "distal_margin");
     inputs.proximal_margin = not_negative(item, "proximal_margin");
     inputs.kerf = not_negative(item, "kerf");
-    inputs.along_line = item.lengths("along_line", most_planes);
+    inputs.along_line = item.lengths("along_line", max_planes);
     if (!inputs.along_line.empty() && inputs.along_line.size() + 1 != inputs.planes.size())
         item.fail("needs one place 'along_line_m' per segment, or none");
     inputs.roll = item.number("roll_rad");
@@ -101,7 +101,7 @@ FibulaInputs inputs_of(const Members& item) {
     if (meant == std::end(resections)) item.fail(fmt::format("has the unknown 'resection' '{}'", taken));
     inputs.resection = *meant;
     if (const auto curve = item.object("curve"))
-        inputs.from_curve = CurveSplit{curve->places("joints", most_planes), not_negative(*curve, "rms"),
+        inputs.from_curve = CurveSplit{curve->places("joints", max_planes), not_negative(*curve, "rms"),
                                        not_negative(*curve, "greatest")};
     return inputs;
 }

@@ -22,7 +22,7 @@ namespace {
 using file::Json;
 
 constexpr double farthest_mm = farthest_seed / mm, widest_mm = widest_brush / mm;
-constexpr std::size_t most_points = 1'000'000;
+constexpr std::size_t max_points = 1'000'000;
 
 constexpr const char* expected =
     R"({"labels": [{"name": "main", "colour": "#d95f02", "strokes": [{"radius_mm": 3, "points_mm": [[x, y, z], ...]}]}, ...]})";
@@ -55,7 +55,7 @@ Stroke stroke_of(const Json& json, const std::string& where) {
     file::refuse_unknown(json, where, stroke_names);
     if (!json.is_object() || !json.contains("points_mm") || !json["points_mm"].is_array() || json["points_mm"].empty())
         throw Error(fmt::format("{}: 'points_mm' must be a list of at least one point", where));
-    if (json["points_mm"].size() > most_points) throw Error(fmt::format("{}: more than {} points", where, most_points));
+    if (json["points_mm"].size() > max_points) throw Error(fmt::format("{}: more than {} points", where, max_points));
     Stroke stroke;
     if (const Json* radius = json.find("radius_mm")) {
         const double value = radius->is_number() ? radius->get<double>() : 0.0;
@@ -108,8 +108,8 @@ std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& f
     if (list.size() < 2 && use == SeedsUse::segmentation)
         throw Error(fmt::format("{}: there {} {}; a segmentation needs seeds of at least two", file,
                                 list.empty() ? "are" : "is", list.empty() ? "no labels" : "one label"));
-    if (list.size() > most_labels)
-        throw Error(fmt::format("{}: {} labels are too many; at most {}", file, list.size(), most_labels));
+    if (list.size() > max_labels)
+        throw Error(fmt::format("{}: {} labels are too many; at most {}", file, list.size(), max_labels));
     std::vector<SeedLabel> labels;
     for (const Json& one : list) {
         SeedLabel label = label_of(one, labels.size(), file, use);

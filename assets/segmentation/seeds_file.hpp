@@ -21,7 +21,7 @@ struct SeedLabel {
     std::vector<Stroke> strokes;
 };
 
-inline constexpr std::size_t most_labels = 100;
+inline constexpr std::size_t max_labels = 100;
 inline constexpr double widest_brush = 0.1, farthest_seed = 100.0;  ///< m, limits of a file
 
 /// Valid name of a label in a file: 1 to 200 bytes of UTF-8 on one line.

@@ -8,10 +8,10 @@
 
 namespace tactus::segmentation {
 
-StrokeRecorder::StrokeRecorder(std::size_t most_strokes, std::size_t most_points)
-    : most_strokes_(most_strokes), most_points_(most_points) {
-    strokes_.reserve(most_strokes);
-    points_.reserve(most_points);
+StrokeRecorder::StrokeRecorder(std::size_t max_strokes, std::size_t max_points)
+    : max_strokes_(max_strokes), max_points_(max_points) {
+    strokes_.reserve(max_strokes);
+    points_.reserve(max_points);
 }
 
 void StrokeRecorder::touch(const Vec3& point, double radius, bool erases) noexcept {
@@ -19,7 +19,7 @@ void StrokeRecorder::touch(const Vec3& point, double radius, bool erases) noexce
     if (!is_seed_place(point) || !(filed > 0.0 && filed <= widest_brush)) return lift();
     const bool goes_on = is_open_ && strokes_.back().radius == filed && strokes_.back().erases == erases;
     if (goes_on && !is_apart(points_.back(), filed, point)) return;
-    if (points_.size() >= most_points_ || (!goes_on && strokes_.size() >= most_strokes_)) {
+    if (points_.size() >= max_points_ || (!goes_on && strokes_.size() >= max_strokes_)) {
         is_full_ = true;
         return lift();
     }

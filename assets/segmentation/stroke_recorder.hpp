@@ -14,7 +14,7 @@ namespace tactus::segmentation {
 /// constructor and label() allocate.
 class StrokeRecorder {
 public:
-    StrokeRecorder(std::size_t most_strokes, std::size_t most_points);
+    StrokeRecorder(std::size_t max_strokes, std::size_t max_points);
 
     /// Reports that the brush is on the bone at `point`, m. Continues the open stroke or starts one; a change of the
     /// radius or of `erases` also starts one. A position or radius that a seeds file cannot store lifts the brush.
@@ -43,7 +43,7 @@ private:
 
     std::vector<Kept> strokes_;
     std::vector<Vec3> points_;
-    std::size_t most_strokes_, most_points_;
+    std::size_t max_strokes_, max_points_;
     bool is_open_ = false, is_full_ = false;
 };
 

@@ -18,7 +18,7 @@ namespace tactus::sound {
 namespace {
 
 const std::array<std::string, 8> keys{"title", "kind", "rate", "delay", "band", "mean_gain", "unit", "taps"};
-constexpr std::size_t most_taps = 1'000'000;
+constexpr std::size_t max_taps = 1'000'000;
 
 SourceLocation location(const toml::node& node, const std::filesystem::path& path) {
     return {path.string(), static_cast<int>(node.source().begin.line), static_cast<int>(node.source().begin.column)};
@@ -86,8 +86,8 @@ vibration::Equaliser load_equaliser(const std::filesystem::path& path) {
             out.unit = text(node, path);
         } else if (name == "taps") {
             const toml::array* taps = node.as_array();
-            if (!taps || taps->empty() || taps->size() > most_taps)
-                throw Error(location(node, path), fmt::format("'taps' must be a list of 1 to {} numbers", most_taps));
+            if (!taps || taps->empty() || taps->size() > max_taps)
+                throw Error(location(node, path), fmt::format("'taps' must be a list of 1 to {} numbers", max_taps));
             for (const toml::node& tap : *taps) {
                 const auto value = tap.value<double>();
                 if (!value || !(std::abs(*value) <= 1e6))

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int fastest_rate = 10'000'000;  // Hz; no sound card or data logger for vibration is faster
 /// Best compression, of silence: FLAC packs 65535 samples into about 13 bytes, Vorbis 4096 into two.
-constexpr double most_frames_per_byte = 8192.0;
+constexpr double max_frames_per_byte = 8192.0;
 /// libsndfile reports an unknown length as the largest number.
 constexpr sf_count_t unknown_length = sf_count_t{1} << 62;
 
@@ -98,7 +98,7 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::st
     if (info.samplerate > fastest_rate)
         fail(fmt::format("its header states {} samples per second; the limit is {}", info.samplerate, fastest_rate));
     if (info.frames < unknown_length)
-        file::require_possible(static_cast<double>(info.frames), most_frames_per_byte * size, path, "samples");
+        file::require_possible(static_cast<double>(info.frames), max_frames_per_byte * size, path, "samples");
     return file;
 }
 

@@ -108,9 +108,9 @@ public:
         const toml::array* items = list->as_array();
         if (!items) throw Error(location(list->source()), "a recording begins with [[recording]], in two brackets");
         if (items->empty()) throw Error(location(list->source()), "the set has no recording");
-        if (items->size() > vibration::SawVoice::most_recordings)
+        if (items->size() > vibration::SawVoice::max_recordings)
             throw Error(location(list->source()), fmt::format("a set has at most {} recordings, not {}",
-                                                              vibration::SawVoice::most_recordings, items->size()));
+                                                              vibration::SawVoice::max_recordings, items->size()));
         for (const toml::node& item : *items) {
             set.recordings.push_back(recording(item));
             if (set.recordings.back().full_scale.has_value() != set.calibrated())
@@ -276,7 +276,7 @@ bool is_plain_sound(const RecordingSet& set) {
 std::string saw_question(const RecordingSet& set) {
     if (!is_plain_sound(set)) return {};
     const Recording& r = set.recordings.front();
-    if (r.order_share >= least_order_share) return {};
+    if (r.order_share >= min_order_share) return {};
     return fmt::format(
         "is {} the sound of a saw? Only {:.0f} % of its power lies in multiples of {:.4g} Hz{}; of saws it is 18 % or "
         "more. It is played all the same",

@@ -67,10 +67,10 @@ struct RecordingSet {
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate = std::nullopt);
 
 /// What makes it doubtful that a sound file is that of a saw; empty: nothing, or the set is one that somebody wrote.
-/// A recording in whose multiples of the rate lies less than `least_order_share` of the power is no machine with that
+/// A recording in whose multiples of the rate lies less than `min_order_share` of the power is no machine with that
 /// rate: 0.18 to 0.43 was found for chain saws by a microphone and 0.43 to 1 for the library's saw, less than 0.13 for
 /// noise, for a fan, and for rates that are not the machine's.
-inline constexpr double least_order_share = 0.15;
+inline constexpr double min_order_share = 0.15;
 std::string saw_question(const RecordingSet& set);
 /// The set was made of a sound file.
 bool is_plain_sound(const RecordingSet& set);

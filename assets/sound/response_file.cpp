@@ -19,7 +19,7 @@ namespace tactus::sound {
 
 namespace {
 
-constexpr int most_lines = 1'000'000;
+constexpr int max_lines = 1'000'000;
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '"')) text.remove_prefix(1);
@@ -61,7 +61,7 @@ public:
             const std::size_t end = rest.find('\n');
             const std::string_view line = trimmed(rest.substr(0, end));
             rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-            if (++line_ > most_lines) fail(fmt::format("longer than {} lines", most_lines));
+            if (++line_ > max_lines) fail(fmt::format("longer than {} lines", max_lines));
             if (line.empty()) continue;
             if (line.front() == '#' || line.front() == '*' || line.front() == ';') remark(line.substr(1));
             else row(cells_of(line));

@@ -41,7 +41,7 @@ std::string list_of(std::span<const double> values) {
 }
 
 /// Orders up to the highest that is heard.
-std::span<const double> heard(const std::array<double, SawModelSize::most_orders>& orders) {
+std::span<const double> heard(const std::array<double, SawModelSize::max_orders>& orders) {
     std::size_t count = orders.size();
     while (count > 1 && orders[count - 1] == 0.0) --count;
     return {orders.data(), count};
@@ -65,9 +65,9 @@ public:
         numbers(need(table, "phases"), out.model.phases, 1, -2.0 * std::numbers::pi, 2.0 * std::numbers::pi);
         const toml::node& list = need(table, "condition");
         const toml::array* conditions = list.as_array();
-        if (!conditions || conditions->empty() || conditions->size() > SawModel::most_conditions)
+        if (!conditions || conditions->empty() || conditions->size() > SawModel::max_conditions)
             fail(list, fmt::format("a model has 1 to {} conditions, each beginning with [[model.condition]]",
-                                   SawModel::most_conditions));
+                                   SawModel::max_conditions));
         for (const toml::node& node : *conditions) out.model.conditions.push_back(condition(node));
         return out;
     }

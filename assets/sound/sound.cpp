@@ -15,7 +15,7 @@ namespace tactus::sound {
 
 namespace {
 
-constexpr std::size_t most_samples = std::size_t{1} << 28;
+constexpr std::size_t max_samples = std::size_t{1} << 28;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Sound load_sound(const std::filesystem::path& path) {
     const auto fail = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
     SF_INFO info{};
     const SoundHandle file = open_sound(path, info);
-    if (static_cast<std::size_t>(info.frames) > most_samples / static_cast<std::size_t>(info.channels))
+    if (static_cast<std::size_t>(info.frames) > max_samples / static_cast<std::size_t>(info.channels))
         fail("the sound is longer than 2^28 samples; cut it first");
     Sound sound{info.samplerate, info.channels, static_cast<std::size_t>(info.frames), {}};
     file::require_room(double(info.frames) * info.channels * sizeof(float), path, "its samples");

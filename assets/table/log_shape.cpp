@@ -20,7 +20,7 @@ namespace tactus::table {
 
 namespace {
 
-constexpr std::size_t most_lines = 1000, most_text = std::size_t{4} << 20, longest_line = 65536;
+constexpr std::size_t max_read_lines = 1000, max_text = std::size_t{4} << 20, longest_line = 65536;
 
 /// With decimal commas a line may have more commas than semicolons, so semicolons take precedence.
 constexpr std::array separators{';', '\t', ',', ' '};
@@ -108,8 +108,8 @@ class Finder {
 public:
     Finder(std::string_view text, const std::string& file, std::optional<int> skip_rows)
         : file_(file), skip_rows_(skip_rows) {
-        LogLines lines(text.substr(0, most_text));
-        for (std::string_view line; lines_.size() < most_lines && lines.next(line);) {
+        LogLines lines(text.substr(0, max_text));
+        for (std::string_view line; lines_.size() < max_read_lines && lines.next(line);) {
             if (line.size() > longest_line)
                 fail(lines.number(), "the line is longer than 64 KiB; this is not a CSV log");
             if (line.find('\0') != std::string_view::npos) fail(lines.number(), "this is not a text file");

@@ -15,7 +15,7 @@ namespace tactus::table {
 
 namespace {
 
-constexpr std::size_t most_cells = 20'000'000;
+constexpr std::size_t max_cells = 20'000'000;
 
 std::string_view unquoted(std::string_view text) {
     const auto begin = text.find_first_not_of(" \r\"");
@@ -91,8 +91,8 @@ NumberTable read_number_table(std::string_view text, const std::string& file) {
         if (row.size() != table.names.size())
             throw Error({file, number, 1},
                         fmt::format("the row has {} fields, the header has {}", row.size(), table.names.size()));
-        if ((table.rows() + 1) * table.names.size() > most_cells)
-            throw Error({file, number, 1}, fmt::format("more than {} fields", most_cells));
+        if ((table.rows() + 1) * table.names.size() > max_cells)
+            throw Error({file, number, 1}, fmt::format("more than {} fields", max_cells));
         for (std::size_t i = 0; i < row.size(); ++i) table.words[i].emplace_back(row[i]);
         table.lines.push_back(number);
     }

@@ -15,7 +15,7 @@ namespace tactus::training {
 namespace {
 
 constexpr double margin = 10e-3;  // m of room around a structure, in which its distance is exact
-constexpr std::size_t most_samples = 200'000'000;
+constexpr std::size_t max_samples = 200'000'000;
 
 /// One label of a map as a signed distance on the map's samples, with room around it.
 volume::Grid distance_of(const volume::Grid& labels, int label, const std::string& what) {
@@ -40,9 +40,9 @@ volume::Grid distance_of(const volume::Grid& labels, int label, const std::strin
         grid.origin[static_cast<int>(a)] =
             labels.origin[static_cast<int>(a)] + offset[a] * labels.spacing[static_cast<int>(a)];
     }
-    if (grid.count() > most_samples)
+    if (grid.count() > max_samples)
         throw Error(fmt::format("{}: the structure spans {} samples; at most {} are possible", what, grid.count(),
-                                most_samples));
+                                max_samples));
     grid.values.assign(grid.count(), 0.0f);
     for (int k = low[2]; k <= high[2]; ++k)
         for (int j = low[1]; j <= high[1]; ++j)

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_spared = 64, most_settings = 256, longest_name = 64;
+constexpr std::size_t max_spared = 64, max_settings = 256, longest_name = 64;
 
 class TaskReader : file::TomlFile {
 public:
@@ -120,7 +120,7 @@ private:
     void read_spared(const toml::node& node, TaskFile& task) const {
         const auto* array = node.as_array();
         if (!array) fail(node, "structures are tables [[spare]]");
-        if (array->size() > most_spared) fail(node, fmt::format("a task spares at most {} structures", most_spared));
+        if (array->size() > max_spared) fail(node, fmt::format("a task spares at most {} structures", max_spared));
         for (const toml::node& one : *array) {
             const toml::table& table = as_table(one);
             know(table, {"name", "file", "label", "margin"});
@@ -180,7 +180,7 @@ private:
     std::vector<std::string> settings(const toml::node& node) const {
         const auto* array = node.as_array();
         if (!array) fail(node, "settings are a list of texts: [\"NODE.PARAM=VALUE\"]");
-        if (array->size() > most_settings) fail(node, fmt::format("a task has at most {} settings", most_settings));
+        if (array->size() > max_settings) fail(node, fmt::format("a task has at most {} settings", max_settings));
         std::vector<std::string> all;
         for (const toml::node& one : *array) {
             all.push_back(word(one));

@@ -28,7 +28,7 @@ namespace tactus::volume {
 namespace {
 
 using Images = std::vector<DicomImage>;
-constexpr std::size_t most_files = 100'000;
+constexpr std::size_t max_slice_files = 100'000;
 constexpr std::size_t mark_end = 132;  // bytes: preamble and mark
 
 // Old files begin with their first element, of group 2 or 8: its tag, and a representation or a short length.
@@ -48,9 +48,9 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
         // A DICOMDIR contains no images.
         if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path())) continue;
         files.push_back(entry.path());
-        if (files.size() > most_files)
+        if (files.size() > max_slice_files)
             throw Error(fmt::format("{}: more than {} DICOM files; name the folder of one examination", folder.string(),
-                                    most_files));
+                                    max_slice_files));
     }
     std::sort(files.begin(), files.end());
     return files;
@@ -336,12 +336,12 @@ std::vector<std::size_t> missing_at(const std::vector<double>& height) {
     std::vector<double> gaps;
     for (std::size_t n = 1; n < height.size(); ++n) gaps.push_back(height[n] - height[n - 1]);
     std::vector<std::size_t> missing;
-    constexpr std::size_t reach = 5, most_in_row = 2;
+    constexpr std::size_t reach = 5, max_in_row = 2;
     for (std::size_t first = 0; first < gaps.size();) {
         std::size_t end = first + 1;
         bool is_isolated = false;
         // The longest row of gaps that are all wide beside their surroundings on both sides.
-        for (std::size_t count = most_in_row; count > 0 && !is_isolated; --count) {
+        for (std::size_t count = max_in_row; count > 0 && !is_isolated; --count) {
             end = first + count;
             if (end > gaps.size()) continue;
             // At an end of the scan only a single gap is isolated.

@@ -52,7 +52,7 @@ std::optional<Place> find(PackedFile& file, const std::string& wanted, const std
     while (const auto entry = next_entry(file, name)) {
         at += 512;
         if (entry->name == wanted) return Place{at, entry->size};
-        if (static_cast<double>(entry->size) > file.most_bytes())
+        if (static_cast<double>(entry->size) > file.max_bytes())
             throw Error(fmt::format("{}: cut short: an entry of {} bytes does not fit in the file", name, entry->size));
         file.skip(padded(entry->size));
         at += padded(entry->size);
@@ -154,7 +154,7 @@ public:
         PackedFile file(path);
         const auto found = find(file, std::string(value_of(matrix, "filename")), name);
         if (!found) throw Error(fmt::format("{}: the file of the matrix is missing", name));
-        if (found->size != count * type.bytes() || static_cast<double>(found->size) > file.most_bytes())
+        if (found->size != count * type.bytes() || static_cast<double>(found->size) > file.max_bytes())
             throw Error(fmt::format("{}: cut short: its shape has {} voxels, but there are {} bytes", name, count,
                                     found->size));
         stream_.emplace(std::vector{SampleStream::Piece{path, 0, found->at, count}}, type, false, Packing::gzip);

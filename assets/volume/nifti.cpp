@@ -218,7 +218,7 @@ public:
         const double header_size = h.is_pair ? 0.0 : static_cast<double>(fields.bytes.size());
         if (!(h.vox_offset >= header_size && h.vox_offset <= 1e8))
             throw Error(fmt::format("{}: an invalid start of the samples, byte {:g}", name, h.vox_offset));
-        if (h.vox_offset + static_cast<double>(count * type.bytes()) > in_samples.most_bytes())
+        if (h.vox_offset + static_cast<double>(count * type.bytes()) > in_samples.max_bytes())
             throw Error(
                 fmt::format("{}: cut short: its header states {} voxels, more than the file can hold", name, count));
         about.format = "NIfTI";

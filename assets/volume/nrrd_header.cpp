@@ -22,7 +22,7 @@ namespace tactus::volume {
 namespace {
 
 constexpr std::size_t max_field = 700, max_bytes = std::size_t{1} << 24, max_axes = 16;
-constexpr int most_lines = 10000;
+constexpr int max_lines = 10000;
 constexpr std::int64_t max_files = 100'000;
 
 bool may_be_long(std::string_view line) {
@@ -156,7 +156,7 @@ private:
         line = std::string_view(text_).substr(at_, end - at_);
         if (line.ends_with('\r')) line.remove_suffix(1);
         at_ = std::min(end + 1, text_.size());
-        if (++number_ > most_lines) fail(fmt::format("the header has more than {} lines", most_lines));
+        if (++number_ > max_lines) fail(fmt::format("the header has more than {} lines", max_lines));
         if (line.size() > max_field && (number_ == 1 || !may_be_long(line)))
             fail(fmt::format("a header field has {} bytes; the limit is {}", line.size(), max_field));
         return true;

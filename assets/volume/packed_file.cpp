@@ -118,7 +118,7 @@ PackedFile::~PackedFile() {
 
 bool PackedFile::is_packed() const { return bzip2_ || (file_ && gzdirect(handle(file_)) == 0); }
 
-double PackedFile::most_bytes() const { return bzip2_ ? size_ * 1e6 : is_packed() ? size_ * 1032.0 : size_; }
+double PackedFile::max_bytes() const { return bzip2_ ? size_ * 1e6 : is_packed() ? size_ * 1032.0 : size_; }
 
 std::size_t PackedFile::read_some(std::span<char> out) {
     if (bzip2_) {

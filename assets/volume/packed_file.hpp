@@ -36,7 +36,7 @@ public:
 
     bool is_packed() const;
     /// Upper bound of the unpacked size; deflate compresses at most 1032 to 1, bzip2 46 bytes to 45 million.
-    double most_bytes() const;
+    double max_bytes() const;
 
 private:
     std::string name_;

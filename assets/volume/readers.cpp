@@ -40,7 +40,7 @@ std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::st
         if (n < 1 || n > 1'000'000) throw Error(fmt::format("{}: {} samples along an axis are not possible", file, n));
         count *= static_cast<double>(n);
     }
-    if (count > most_voxels)
+    if (count > max_voxels)
         throw Error(fmt::format("{}: too many voxels: {:.0f} (at most 1e9); crop the file first", file, count));
     return static_cast<std::size_t>(count);
 }

@@ -111,7 +111,7 @@ void ReorientedVolume::box_around() {
     layout_ = {{}, low, spacing_for(in), {}};
     double count = 1.0;
     for (int axis = 0; axis < 3; ++axis) count *= std::floor((high[axis] - low[axis]) / layout_.spacing[axis]) + 1.0;
-    if (!(count <= most_voxels))
+    if (!(count <= max_voxels))
         throw Error("the rotated volume would need more than a billion voxels on LPS axes; crop the file first");
     for (int axis = 0; axis < 3; ++axis)
         layout_.size[static_cast<std::size_t>(axis)] =

@@ -4,6 +4,6 @@
 
 namespace tactus::volume {
 
-inline constexpr double most_voxels = 1e9;
+inline constexpr double max_voxels = 1e9;
 
 }  // namespace tactus::volume

@@ -85,7 +85,7 @@ struct OpenStream {
     PaStream* stream = nullptr;
 };
 
-constexpr std::size_t most_unheard = 65536;  // frames in one callback of a card without outputs
+constexpr std::size_t max_unheard = 65536;  // frames in one callback of a card without outputs
 
 /// In freewheel mode the server waits for its clients, so the callback waits for the engine's sound, up to a limit.
 void wait_for_sound(const StreamState& state, unsigned long frames) {
@@ -101,7 +101,7 @@ int feed_card(const void* input, void* output, unsigned long frames, const PaStr
                              (flags & (paInputOverflow | paInputUnderflow)) != 0);
     if (open.jack && open.jack->freewheels()) wait_for_sound(open.state, frames);
     if (!output) {
-        if (frames <= most_unheard) open.state.feed(open.unheard.data(), frames, now);
+        if (frames <= max_unheard) open.state.feed(open.unheard.data(), frames, now);
         return paContinue;
     }
     open.state.feed(static_cast<float*>(output), frames, open.inputs ? now : steady_ns());
@@ -162,7 +162,7 @@ private:
                 fmt::format("'{}' has {} channels, but {} are needed", name_, info.maxOutputChannels, channels));
         if (inputs > info.maxInputChannels)
             throw Error(fmt::format("'{}' has {} inputs, but {} are needed", name_, info.maxInputChannels, inputs));
-        if (!has_outputs) open_->unheard.resize(most_unheard * static_cast<std::size_t>(channels));
+        if (!has_outputs) open_->unheard.resize(max_unheard * static_cast<std::size_t>(channels));
         if (info.hostApi == Pa_HostApiTypeIdToHostApiIndex(paJACK)) open_->jack = std::make_unique<JackWatch>();
         played.channelCount = channels;
         played.sampleFormat = paFloat32;

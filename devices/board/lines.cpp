@@ -42,8 +42,8 @@ namespace {
 
 constexpr std::uint8_t board_id = 5;
 constexpr std::int64_t gap_ns = 3'000'000;
-constexpr float most_degrees = 720.0f;
-constexpr double most_jump_deg = 10.0;
+constexpr float max_degrees = 720.0f;
+constexpr double max_jump_deg = 10.0;
 
 void append(std::vector<std::uint8_t>& bytes, double number) {
     const auto value = static_cast<float>(number);
@@ -93,14 +93,14 @@ void DiyProtocol::take(std::span<const std::uint8_t> bytes, std::int64_t silence
         size_ = 0;
         float degrees[2];
         std::memcpy(degrees, held_.data() + 1, sizeof degrees);
-        if (!(std::abs(degrees[0]) <= most_degrees) || !(std::abs(degrees[1]) <= most_degrees)) {
+        if (!(std::abs(degrees[0]) <= max_degrees) || !(std::abs(degrees[1]) <= max_degrees)) {
             skips_ = true;
             continue;
         }
         ++told_.heard;
         bool is_near = has_before_;
         for (std::size_t i = 0; i < 2; ++i) {
-            is_near = is_near && std::abs(degrees[i] - before_deg_[i]) <= most_jump_deg;
+            is_near = is_near && std::abs(degrees[i] - before_deg_[i]) <= max_jump_deg;
             before_deg_[i] = degrees[i];
         }
         has_before_ = true;

@@ -10,7 +10,7 @@ namespace tactus::board {
 
 namespace {
 
-constexpr double least_determinant = 1e-7;  // m²: nearer to a stretched linkage a force would need endless torques
+constexpr double min_determinant = 1e-7;  // m²: nearer to a stretched linkage a force would need endless torques
 
 }  // namespace
 
@@ -53,7 +53,7 @@ std::array<double, 2> Mechanism::torques(const std::array<double, 2>& angles, co
         drive[i] = glm::dot(link[i], Vec3(-proximal_ * s, proximal_ * c, 0.0));
     }
     const double determinant = link[0].x * link[1].y - link[0].y * link[1].x;
-    if (!(std::abs(determinant) > least_determinant)) return {};
+    if (!(std::abs(determinant) > min_determinant)) return {};
     const Vec3 first = Vec3(link[1].y, -link[1].x, 0.0) * (drive[0] / determinant);
     const Vec3 second = Vec3(-link[0].y, link[0].x, 0.0) * (drive[1] / determinant);
     return {glm::dot(first, force), glm::dot(second, force)};

@@ -15,12 +15,12 @@ namespace tactus::display {
 
 namespace {
 
-constexpr int most_pixels_per_side = 8192;
+constexpr int max_pixels_per_side = 8192;
 
 int checked(int width, int height) {
-    if (width < 1 || height < 1 || width > most_pixels_per_side || height > most_pixels_per_side)
+    if (width < 1 || height < 1 || width > max_pixels_per_side || height > max_pixels_per_side)
         throw Error(fmt::format("a picture cannot have {} x {} pixels; each side must be 1 to {}", width, height,
-                                most_pixels_per_side));
+                                max_pixels_per_side));
     return width;
 }
 
@@ -38,8 +38,8 @@ void check_frame(int width, int height) {
 }  // namespace
 
 PictureMaker::PictureMaker(int width, int height) : width_(checked(width, height)), height_(height) {
-    GLint most_samples = 0;
-    glGetIntegerv(GL_MAX_SAMPLES, &most_samples);
+    GLint max_samples = 0;
+    glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
     glGenRenderbuffers(3, buffers_);
     glGenFramebuffers(1, &resolved_);
     glBindFramebuffer(GL_FRAMEBUFFER, resolved_);
@@ -47,7 +47,7 @@ PictureMaker::PictureMaker(int width, int height) : width_(checked(width, height
     check_frame(width, height);
     glGenFramebuffers(1, &frame_);
     glBindFramebuffer(GL_FRAMEBUFFER, frame_);
-    const int samples = std::min(most_samples, 4);
+    const int samples = std::min(max_samples, 4);
     attach(buffers_[1], GL_COLOR_ATTACHMENT0, GL_RGBA8, samples, width, height);
     attach(buffers_[2], GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, samples, width, height);
     check_frame(width, height);

@@ -16,7 +16,7 @@ namespace tactus::display {
 
 namespace {
 
-constexpr int most_per_side = 512;
+constexpr int max_per_side = 512;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ GreyImage grey_image(const volume::Grid& grid, const GreyScale& scale) {
     std::array<int, 3> step{};
     std::array<int, 3>& size = image.size;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        step[axis] = (grid.size[axis] + most_per_side - 1) / most_per_side;
+        step[axis] = (grid.size[axis] + max_per_side - 1) / max_per_side;
         size[axis] = (grid.size[axis] - 1) / step[axis] + 1;
     }
     std::vector<std::uint8_t>& grey = image.grey;

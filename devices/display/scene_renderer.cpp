@@ -277,14 +277,14 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
 }
 
 bool SceneRenderer::draw_some(const Picture& picture, std::span<const DrawnView> views, DrawnSoFar& so_far,
-                              std::size_t most_triangles) {
+                              std::size_t max_triangles) {
     drawn_triangles_ = 0;
     glEnable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
     for (; so_far.view < views.size(); so_far = {so_far.view + 1}) {
         const DrawnView& view = views[so_far.view];
         if (view.width < 1 || view.height < 1) continue;
-        if (!draw_view(picture, view, so_far, most_triangles)) break;
+        if (!draw_view(picture, view, so_far, max_triangles)) break;
     }
     glFrontFace(GL_CCW);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

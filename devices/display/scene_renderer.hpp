@@ -101,7 +101,7 @@ public:
     /// the hidden parts of meshes that shine through. The framebuffer must still hold the previous steps, and picture
     /// and views must be unchanged. Returns true when the frame is complete, with the same pixels as by `draw`.
     bool draw_some(const Picture& picture, std::span<const DrawnView> views, DrawnSoFar& so_far,
-                   std::size_t most_triangles);
+                   std::size_t max_triangles);
     /// Number of triangles of the last `draw` or `draw_some`.
     std::size_t drawn_triangles() const { return drawn_triangles_; }
 

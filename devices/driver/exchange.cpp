@@ -11,7 +11,7 @@ namespace tactus::driver {
 namespace {
 
 // Samples that arrive in a burst say nothing of the velocity: their stamps are those of the line.
-constexpr std::int64_t least_step_ns = 100'000, longest_step_ns = 50'000'000;
+constexpr std::int64_t min_step_ns = 100'000, longest_step_ns = 50'000'000;
 
 void put(const Vec3& v, double (&into)[3]) noexcept {
     for (int i = 0; i < 3; ++i) into[i] = v[i];
@@ -42,7 +42,7 @@ void Exchange::estimate(Reading& reading, std::int64_t now) noexcept {
         spin_(turned_, 0.0);
         twist_ = {};
         windowed_ns_ = now;
-    } else if (step >= least_step_ns) {
+    } else if (step >= min_step_ns) {
         const double elapsed = static_cast<double>(step) * 1e-9;
         // The way turned, summed from small rotations: it has no seam at half a turn.
         turned_ += rotation_between(turned_from_, reading.pose.orientation);

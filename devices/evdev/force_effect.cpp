@@ -9,7 +9,7 @@ namespace tactus::evdev {
 namespace {
 
 constexpr std::uint16_t to_the_left = 0x4000;
-constexpr double most_constant = 0x7FFF, most_rumble = 0xFFFF;
+constexpr double max_constant = 0x7FFF, max_rumble = 0xFFFF;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ bool ForceEffect::give(double strength, std::int64_t now) noexcept {
     if (file_ < 0) return false;
     const bool is_constant = effect_.type == FF_CONSTANT;
     const double share = std::isfinite(strength) ? std::clamp(strength, is_constant ? -1.0 : 0.0, 1.0) : 0.0;
-    const int level = static_cast<int>(std::lround(share * (is_constant ? most_constant : most_rumble)));
+    const int level = static_cast<int>(std::lround(share * (is_constant ? max_constant : max_rumble)));
     // The same id again changes the effect while it plays.
     if (level != level_ || !is_told_) {
         set(level);

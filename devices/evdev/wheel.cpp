@@ -29,7 +29,7 @@ namespace tactus::evdev {
 namespace {
 
 constexpr double usual_range = 900.0 * degree;  // of wheels whose driver does not say
-constexpr int most_reads = 8;  // a round; more is read in the next one
+constexpr int max_reads = 8;  // a round; more is read in the next one
 constexpr std::int64_t longest_refusal_ns = 200'000'000;
 // A wheel whose torque nobody states is taken for the strongest one sold: none pushes harder than it is told.
 constexpr double strongest_torque = 30.0;  // N m
@@ -271,7 +271,7 @@ private:
     /// False when the wheel is lost.
     bool listen() noexcept {
         std::array<input_event, 64> events;
-        for (int i = 0; i < most_reads; ++i) {
+        for (int i = 0; i < max_reads; ++i) {
             const ssize_t got = system_.read(file_, events);
             if (got < 0 && (errno == EAGAIN || errno == EINTR)) return true;
             if (got < static_cast<ssize_t>(sizeof(input_event))) return false;

@@ -11,7 +11,7 @@
 namespace tactus::forcedimension {
 
 /// Buffer size for dhdGetStatus, which does not check it: version 3.17 writes 17 entries, a later SDK perhaps more.
-inline constexpr int most_status = 128;
+inline constexpr int max_status = 128;
 /// Indices in the result of dhdGetStatus.
 enum StatusPlace { status_reset = 3, status_force = 5 };
 

@@ -31,7 +31,7 @@ Quat from_sdk(const double (&rows)[3][3]) noexcept {
 
 constexpr unsigned char watchdog_of_device = 160;  // of 125 µs: 20 ms
 constexpr double delay_s = 1e-3;  // two of the SDK's exchanges and one round of the driver's thread
-constexpr int most_failures = 5;
+constexpr int max_failures = 5;
 constexpr int rounds_between_looks = 40;
 
 class DhdDevice final : public driver::Backend {
@@ -98,7 +98,7 @@ public:
         if (!is_calibrated_) {
             if (++until_look_ < rounds_between_looks) return true;
             until_look_ = 0;
-            if (!look()) return ++failures_ < most_failures;
+            if (!look()) return ++failures_ < max_failures;
             if (!is_calibrated_) {
                 exchange.publish_loss();
                 return true;
@@ -109,7 +109,7 @@ public:
         const bool given = !gives_force_ || give(force) >= 0;
         double x = 0.0, y = 0.0, z = 0.0, rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         const bool read = api_->frame(&x, &y, &z, rows, id()) >= 0;
-        if (!given || !read) return ++failures_ < most_failures;
+        if (!given || !read) return ++failures_ < max_failures;
         failures_ = 0;
         driver::Reading reading;
         reading.pose = {from_sdk(Vec3(x, y, z)), from_sdk(rows)};
@@ -158,7 +158,7 @@ private:
 
     /// False when the device does not answer.
     bool look() noexcept {
-        int status[most_status] = {};
+        int status[max_status] = {};
         if (api_->status(status, id()) < 0) return false;
         is_calibrated_ = status[status_reset] != 0;
         return true;

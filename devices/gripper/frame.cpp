@@ -91,7 +91,7 @@ bool unpack(const Frame& frame, SampleFrame& out) noexcept {
 FrameBytes encode(const Frame& frame) noexcept {
     FrameBytes out;
     std::uint8_t* p = out.bytes.data();
-    const std::size_t size = std::min(frame.size, most_payload);
+    const std::size_t size = std::min(frame.size, max_payload);
     p[0] = first_sync;
     p[1] = second_sync;
     p[2] = version;
@@ -121,7 +121,7 @@ bool FrameReader::look() noexcept {
         const std::uint8_t* p = held_.data();
         const bool sync = p[0] == first_sync && (size_ < 2 || p[1] == second_sync);
         const bool head = sync && (size_ < 3 || p[2] == version) && (size_ < 4 || (p[3] >= 1 && p[3] <= 4)) &&
-                          (size_ < header || get16(p + 6) <= most_payload);
+                          (size_ < header || get16(p + 6) <= max_payload);
         if (!head) {
             if (sync && size_ >= 3) ++counts_.bad_header;
             ++counts_.skipped_bytes;

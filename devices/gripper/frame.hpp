@@ -30,13 +30,13 @@ namespace tactus::gripper {
 
 enum class FrameKind : std::uint8_t { drive = 1, sample = 2, torque = 3, joints = 4 };
 
-inline constexpr std::size_t most_payload = 64, frame_overhead = 12;
+inline constexpr std::size_t max_payload = 64, frame_overhead = 12;
 
 struct Frame {
     FrameKind kind = FrameKind::drive;
     std::uint16_t sequence = 0;
     std::size_t size = 0;
-    std::array<std::uint8_t, most_payload> payload{};
+    std::array<std::uint8_t, max_payload> payload{};
 };
 
 struct DriveFrame {
@@ -62,7 +62,7 @@ bool unpack(const Frame& frame, DriveFrame& out) noexcept;
 bool unpack(const Frame& frame, SampleFrame& out) noexcept;
 
 struct FrameBytes {
-    std::array<std::uint8_t, most_payload + frame_overhead> bytes{};
+    std::array<std::uint8_t, max_payload + frame_overhead> bytes{};
     std::size_t size = 0;
 };
 FrameBytes encode(const Frame& frame) noexcept;
@@ -83,7 +83,7 @@ private:
     bool look() noexcept;
     void drop(std::size_t bytes) noexcept;
 
-    std::array<std::uint8_t, most_payload + frame_overhead> held_{};
+    std::array<std::uint8_t, max_payload + frame_overhead> held_{};
     std::size_t size_ = 0;
     Frame frame_;
     Counts counts_;

@@ -88,7 +88,7 @@ void SerialGripper::accept(const Frame& frame) noexcept {
     has_sample_ = true;
     silent_for_ = 0.0;
     ++sample_.counter;
-    for (std::size_t i = 0; i < most_fingers; ++i)
+    for (std::size_t i = 0; i < max_fingers; ++i)
         sample_.fingers[i] = {told.encoder[i] * settings_.pulse, settings_.gauge[i](told.gauge[i]),
                               (told.slips[i] ? motor_slips : 0) | (told.limited[i] ? motor_limited : 0)};
 }
@@ -97,7 +97,7 @@ void SerialGripper::drive(const MotorDrive& wanted) noexcept {
     DriveFrame frame;
     frame.run = std::isfinite(wanted.speed[0]) && std::isfinite(wanted.speed[1]) && std::isfinite(wanted.cord);
     if (frame.run) {
-        for (std::size_t i = 0; i < most_fingers; ++i)
+        for (std::size_t i = 0; i < max_fingers; ++i)
             frame.speed_um_s[i] = micro(std::clamp(wanted.speed[i], -settings_.max_speed, settings_.max_speed));
         frame.cord_um = micro(wanted.cord);
         frame.free = wanted.free;

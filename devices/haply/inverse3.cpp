@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds longest_opening{2000};
 constexpr std::int64_t longest_silence_ns = 250'000'000, tell_again_ns = 5'000'000;
-constexpr int most_at_once = 64;
+constexpr int max_at_once = 64;
 constexpr const char* no_device = "the service knows no Inverse3; is it connected and switched on?";
 
 struct Settings {
@@ -92,7 +92,7 @@ public:
             WebSocket::Heard heard = service_.receive(milliseconds(2));
             if (heard == WebSocket::Heard::nothing) return now - heard_ns_ < longest_silence_ns;
             // Of what waits only the newest counts.
-            for (int i = 0; i < most_at_once && heard == WebSocket::Heard::message; ++i) {
+            for (int i = 0; i < max_at_once && heard == WebSocket::Heard::message; ++i) {
                 newest_ = service_.text();
                 heard = service_.receive(milliseconds(0));
             }

@@ -21,14 +21,14 @@ namespace {
 
 // A window needs a moment until its first picture of a run.
 constexpr std::int64_t longest_start_ns = 10'000'000'000;
-constexpr double least_glide_s = 0.004, longest_glide_s = 0.5;
+constexpr double min_glide_s = 0.004, longest_glide_s = 0.5;
 constexpr double farthest_m = 10.0;
 constexpr double fastest_m_s = 0.5, fastest_rad_s = 10.0;  // no hand jumps
 
 /// The intended pose: from picture to picture in a straight line, as long as a picture lasts.
 struct Gliding {
     Pose from, to;
-    double glide_s = least_glide_s, at_s = 0.0;
+    double glide_s = min_glide_s, at_s = 0.0;
 
     Pose here() const noexcept {
         const double share = std::min(at_s / glide_s, 1.0);
@@ -37,7 +37,7 @@ struct Gliding {
     void go_to(const Pose& wanted, double seconds) noexcept {
         from = here();
         to = {wanted.position, glm::normalize(wanted.orientation)};
-        glide_s = std::max({std::clamp(seconds, least_glide_s, longest_glide_s),
+        glide_s = std::max({std::clamp(seconds, min_glide_s, longest_glide_s),
                             glm::length(to.position - from.position) / fastest_m_s,
                             glm::length(rotation_between(from.orientation, to.orientation)) / fastest_rad_s});
         at_s = 0.0;

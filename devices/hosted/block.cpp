@@ -43,7 +43,7 @@ SampleRecord pack(const DeviceSample& sample) noexcept {
     put(sample.pose.orientation, record.orientation);
     put(sample.twist.linear, record.linear);
     put(sample.twist.angular, record.angular);
-    for (std::size_t i = 0; i < most_fingers; ++i) {
+    for (std::size_t i = 0; i < max_fingers; ++i) {
         record.finger_position[i] = sample.fingers[i].position;
         record.finger_force[i] = sample.fingers[i].force;
         record.finger_state[i] = sample.fingers[i].state;
@@ -60,7 +60,7 @@ DeviceSample unpack(const SampleRecord& record) noexcept {
     sample.pose.position = get(record.position);
     sample.pose.orientation = get(record.orientation);
     sample.twist = {get(record.linear), get(record.angular)};
-    for (std::size_t i = 0; i < most_fingers; ++i)
+    for (std::size_t i = 0; i < max_fingers; ++i)
         sample.fingers[i] = {record.finger_position[i], record.finger_force[i], record.finger_state[i]};
     sample.counter = record.counter;
     sample.buttons = static_cast<std::uint32_t>(record.buttons);
@@ -81,7 +81,7 @@ Wrench unpack(const ForceRecord& record) noexcept { return {get(record.force), g
 
 DriveRecord pack(const MotorDrive& drive, std::int64_t now_ns) noexcept {
     DriveRecord record;
-    for (std::size_t i = 0; i < most_fingers; ++i) record.speed[i] = drive.speed[i];
+    for (std::size_t i = 0; i < max_fingers; ++i) record.speed[i] = drive.speed[i];
     record.cord = drive.cord;
     record.is_free = drive.free ? 1 : 0;
     record.committed_ns = now_ns;
@@ -90,7 +90,7 @@ DriveRecord pack(const MotorDrive& drive, std::int64_t now_ns) noexcept {
 
 MotorDrive unpack(const DriveRecord& record) noexcept {
     MotorDrive drive;
-    for (std::size_t i = 0; i < most_fingers; ++i) drive.speed[i] = record.speed[i];
+    for (std::size_t i = 0; i < max_fingers; ++i) drive.speed[i] = record.speed[i];
     drive.cord = record.cord;
     drive.free = record.is_free == 1;
     return drive;
@@ -151,7 +151,7 @@ DeviceInfo unpack(const InfoRecord& record) {
     for (const Number& number : numbers)
         if (const double stated = record.*number.shared; !(std::isfinite(stated) && stated >= 0.0))
             throw Error(fmt::format("the driver states {} as a limit of its device", stated));
-    if (record.fingers < 0 || record.fingers > static_cast<std::int64_t>(most_fingers))
+    if (record.fingers < 0 || record.fingers > static_cast<std::int64_t>(max_fingers))
         throw Error(fmt::format("the driver states {} fingers", record.fingers));
     DeviceInfo info;
     info.name = text_of(record.name, sizeof record.name);

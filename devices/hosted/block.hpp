@@ -19,8 +19,8 @@ namespace tactus::hosted {
 struct SampleRecord {
     double position[3] = {}, orientation[4] = {1.0, 0.0, 0.0, 0.0};  ///< m; w, x, y, z
     double linear[3] = {}, angular[3] = {};  ///< m/s, rad/s
-    double finger_position[most_fingers] = {}, finger_force[most_fingers] = {};  ///< m, N
-    std::uint64_t finger_state[most_fingers] = {};
+    double finger_position[max_fingers] = {}, finger_force[max_fingers] = {};  ///< m, N
+    std::uint64_t finger_state[max_fingers] = {};
     std::int64_t counter = 0;
     std::uint64_t buttons = 0;
     std::uint64_t is_valid = 0, is_late = 0;
@@ -36,7 +36,7 @@ struct ForceRecord {
 };
 
 struct DriveRecord {
-    double speed[most_fingers] = {};  ///< m/s
+    double speed[max_fingers] = {};  ///< m/s
     double cord = 0.0;  ///< m
     std::uint64_t is_free = 0;
     std::int64_t committed_ns = 0;

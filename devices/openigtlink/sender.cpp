@@ -67,7 +67,7 @@ struct TransformServer::Shared {
 
     void take_new() {
         for (int file; (file = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)) >= 0;) {
-            if (clients.size() >= most_clients) {
+            if (clients.size() >= max_clients) {
                 ::close(file);
                 continue;
             }

@@ -17,7 +17,7 @@ namespace tactus::openigtlink {
 class TransformServer {
 public:
     static constexpr std::size_t longest_backlog = 65536;
-    static constexpr std::size_t most_clients = 32;  ///< further ones are disconnected to save descriptors
+    static constexpr std::size_t max_clients = 32;  ///< further ones are disconnected to save descriptors
 
     /// Returns the server of this process at that address and port; opens it if there is none. Any thread. Throws
     /// Error.

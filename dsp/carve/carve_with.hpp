@@ -80,7 +80,7 @@ public:
 private:
     static constexpr std::size_t chunk = 8;  // spans stamped together
     static constexpr double near_voxels = 3.0;  // voxels; depth below the cut that every update refreshes
-    static constexpr double least_cut = 0.05;  // voxels; smaller motions wait for the next update
+    static constexpr double min_cut = 0.05;  // voxels; smaller motions wait for the next update
     static constexpr double detour = 2e-5;  // m by which a path may exceed the chord that is cut in one step
 
     /// Ends of a span at its last cut, in the bone's frame.
@@ -91,7 +91,7 @@ private:
     /// A front that is not finite or far from the bone cuts nothing, and no path starts from it.
     template <class Field>
     static bool is_near(const Field& field, const CutFront& front) noexcept {
-        if (!is_valid(front.pose) || static_cast<std::size_t>(front.count) > CutFront::most_nodes) return false;
+        if (!is_valid(front.pose) || static_cast<std::size_t>(front.count) > CutFront::max_nodes) return false;
         constexpr double margin = 0.2;  // m
         const Vec3 low = field.origin();
         for (std::size_t n = 0; n < static_cast<std::size_t>(front.count); ++n) {
@@ -131,7 +131,7 @@ private:
     template <class Field>
     void finish(Field& field, CarveResult& result) noexcept {
         if (!cutting_) return;
-        if (moved_since(cut_) > least_cut * voxel_ || any_fresh()) cut_out(field, result);
+        if (moved_since(cut_) > min_cut * voxel_ || any_fresh()) cut_out(field, result);
         deepen(field, result);
     }
 

@@ -34,7 +34,7 @@ struct EditedBone {
     Vec3 spacing() const noexcept { return bone.layout().spacing; }
 };
 
-constexpr double most_nodes = 4096.0;
+constexpr double max_nodes = 4096.0;
 
 void check(const CarveSettings& s) {
     const std::pair<std::string_view, double> positive[] = {{"blade length", s.blade_length},
@@ -62,8 +62,8 @@ void check(const CarveSettings& s) {
                         "ridges; lengthen the stroke",
                         1e3 * s.stroke, 1e3 * s.tooth_pitch));
     }
-    if ((s.blade_length + s.stroke) / s.tooth_pitch > most_nodes) {
-        throw Error(fmt::format("saw: more than {} teeth; enlarge the tooth pitch", most_nodes));
+    if ((s.blade_length + s.stroke) / s.tooth_pitch > max_nodes) {
+        throw Error(fmt::format("saw: more than {} teeth; enlarge the tooth pitch", max_nodes));
     }
 }
 

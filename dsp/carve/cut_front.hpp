@@ -16,14 +16,14 @@ namespace tactus::carve {
 /// the edge. For the ball of a burr, all nodes are equal (two). Consecutive fronts form the path that `Carver` removes.
 struct CutFront {
     static constexpr std::string_view wire_name = "front";
-    static constexpr std::size_t most_nodes = 64;
+    static constexpr std::size_t max_nodes = 64;
 
     Pose pose;  ///< of the tool: x along the edge, y the cutting direction, z across
     double kerf = 0.0;  ///< m, width of the cut
     double pitch = 0.0;  ///< m between nodes
     std::uint64_t seated = 0;  ///< bit per node: it follows the tool; other nodes lie in uncut bone
     std::uint64_t fresh = 0;  ///< bit per node: newly placed, no path leads here
-    std::array<std::array<float, 3>, most_nodes> offset{};  ///< m from pose.position, axes of the scene
+    std::array<std::array<float, 3>, max_nodes> offset{};  ///< m from pose.position, axes of the scene
     std::int32_t count = 0;
     std::int32_t running = 0;  ///< 1: the tool is powered and cuts
     std::int64_t version = 0;  ///< counts ticks

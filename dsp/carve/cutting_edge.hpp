@@ -84,7 +84,7 @@ public:
     template <class Field>
     void follow(const Field& field, const Pose& pose, double dt, double removal) noexcept {
         frame(pose);
-        const int steps = std::clamp(static_cast<int>(std::ceil(dt / longest_step - 1e-9)), 1, most_steps);
+        const int steps = std::clamp(static_cast<int>(std::ceil(dt / longest_step - 1e-9)), 1, max_steps);
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             EdgeNode& node = nodes_[n];
             const Vec3 from = node.target;
@@ -109,11 +109,11 @@ public:
 
 private:
     static constexpr double longest_step = 0.001;  // s
-    static constexpr int most_steps = 64;
+    static constexpr int max_steps = 64;
     static constexpr double fastest_hand = 3.0;  // m/s
     static constexpr double reach = 0.030;  // m of bone out of which a repositioned blade is moved back
-    static constexpr double most_aside = 0.010;  // m: a node farther from its target is detached
-    static constexpr int most_moves = 32;
+    static constexpr double max_aside = 0.010;  // m: a node farther from its target is detached
+    static constexpr int max_moves = 32;
 
     void frame(const Pose& pose) noexcept {
         x_ = pose.rotate({1, 0, 0});
@@ -153,7 +153,7 @@ private:
         }
         const bool withdrawn = glm::dot(lag, y_) <= 0.0 && field.value(node.target) >= radius_;
         const double aside = std::sqrt(std::max(0.0, distance * distance - glm::dot(lag, y_) * glm::dot(lag, y_)));
-        if (aside > most_aside || (withdrawn && distance > radius_)) return seat(field, node);
+        if (aside > max_aside || (withdrawn && distance > radius_)) return seat(field, node);
         if (withdrawn) {
             node.at = node.target;
             return;
@@ -176,7 +176,7 @@ private:
                  double way, double time, double removal) const noexcept {
         // In contact the interpolated distance ripples: hysteresis between touching and free.
         const double slack = (node.cutting ? 0.15 : 0.02) * voxel_;
-        for (int move = 0; move < most_moves && way > 1e-12; ++move) {
+        for (int move = 0; move < max_moves && way > 1e-12; ++move) {
             const RoundFront::Contact front =
                 RoundFront{radius_, ahead_}.look(field, node.at, direction, side, neighbour, slack);
             if (front.density > 0.0) {

@@ -45,7 +45,7 @@ struct Relation {
 
     /// Lower bound of the distance at the node's points.
     double clearance(const ShellNode& node) const noexcept {
-        return map->least_within(shift + rotation * node.centre, node.radius);
+        return map->min_within(shift + rotation * node.centre, node.radius);
     }
 
     kernel::PairFrame frame(const ContactLaw& law, ContactParts parts) const noexcept {
@@ -148,10 +148,10 @@ void add(ContactSum& sum, const Totals& totals, const Relation& relation) noexce
 
 }  // namespace
 
-PointshellContact::PointshellContact(std::size_t most_nodes) {
-    frontier_.reserve(most_nodes);
-    next_.reserve(most_nodes);
-    chosen_.reserve(most_nodes);
+PointshellContact::PointshellContact(std::size_t max_nodes) {
+    frontier_.reserve(max_nodes);
+    next_.reserve(max_nodes);
+    chosen_.reserve(max_nodes);
     // Detects the processor now, not in the first tick.
     kernel::variant_in_use();
     kernel::LaneSums none;
@@ -226,10 +226,10 @@ ContactSum PointshellContact::operator()(std::span<const ContactPair> pairs, con
         frame.prefetches = end - first > many_chunks;
         kernel::LaneSums lanes;
         Totals totals;
-        kernel::ChunkFrame chunks[kernel::most_chunks];
+        kernel::ChunkFrame chunks[kernel::max_chunks];
         while (first < end) {
             std::size_t count = 0;
-            for (; count < kernel::most_chunks && first < end; ++first) {
+            for (; count < kernel::max_chunks && first < end; ++first) {
                 chunks[count++] = relation.chunk(chosen_[first].node);
                 sum.evaluated += relation.shell->nodes[chosen_[first].node].held;
             }

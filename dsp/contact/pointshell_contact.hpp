@@ -65,9 +65,9 @@ enum class ContactParts : std::uint8_t { energy, all };
 /// the same single-precision operations in the same order. Differs from the reference by less than 1e-5 of Σ|f|.
 class PointshellContact {
 public:
-    /// Capacity for `most_nodes` nodes: the sum of shell->nodes.size() over the pairs of a call. All memory is
+    /// Capacity for `max_nodes` nodes: the sum of shell->nodes.size() over the pairs of a call. All memory is
     /// allocated here; when the capacity is exceeded, the farthest parts use coarser levels.
-    explicit PointshellContact(std::size_t most_nodes);
+    explicit PointshellContact(std::size_t max_nodes);
 
     /// Evaluates at most `budget` points, but at least the coarsest chunk (64 points) of each pair that may touch. When
     /// the budget is too small, the tree is refined level by level, nearest parts first, and elsewhere a coarser point

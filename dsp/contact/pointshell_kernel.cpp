@@ -99,7 +99,7 @@ std::int64_t in_use() {
 }  // namespace
 
 void evaluate(const PairFrame& pair, std::span<const ChunkFrame> chunks, LaneSums& into) noexcept {
-    HWY_DYNAMIC_DISPATCH(evaluate_chunks)(pair, chunks.data(), std::min(chunks.size(), most_chunks), into);
+    HWY_DYNAMIC_DISPATCH(evaluate_chunks)(pair, chunks.data(), std::min(chunks.size(), max_chunks), into);
 }
 
 std::vector<std::string_view> variants() {

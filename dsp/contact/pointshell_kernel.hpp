@@ -19,7 +19,7 @@ namespace tactus::contact::kernel {
 
 inline constexpr std::size_t lanes = 16;
 /// Maximum per call. Lanes are summed in single precision within a call; this number keeps seven digits.
-inline constexpr std::size_t most_chunks = 32;
+inline constexpr std::size_t max_chunks = 32;
 
 /// Data of a pair, common to its chunks. Map frame.
 struct PairFrame {
@@ -60,7 +60,7 @@ struct LaneSums {
     std::size_t in_contact = 0;
 };
 
-/// Adds at most `most_chunks` chunks.
+/// Adds at most `max_chunks` chunks.
 void evaluate(const PairFrame& pair, std::span<const ChunkFrame> chunks, LaneSums& into) noexcept;
 
 /// Variants that this processor can run, best first, and the one in use. For tests and reports.

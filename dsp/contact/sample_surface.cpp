@@ -20,7 +20,7 @@ namespace tactus::contact {
 
 namespace {
 
-constexpr double least_distance = 0.77;  // of the spacing; leaves about one point per spacing²
+constexpr double min_distance = 0.77;  // of the spacing; leaves about one point per spacing²
 constexpr double candidates_per_point = 10.0;
 constexpr double finest = 1.0 / 3.0;  // of the spacing, at high curvature
 // Points whose normals differ by more than this lie on different sides of an edge or of a thin wall.
@@ -97,9 +97,9 @@ void follow_curvature(Candidates& all, const SurfaceSampling& sampling) {
     const geometry::PackedCubes cubes(all.position, all.normal, sampling.spacing);
     // Within this turn the radius is at its greatest: cubes whose normals all are count for nothing.
     std::vector<NormalCone> cones(cubes.slots());
-    for (std::size_t s = 0; s < cones.size(); ++s) cones[s] = cone_of(cubes.in(s), sampling.most_turn);
+    for (std::size_t s = 0; s < cones.size(); ++s) cones[s] = cone_of(cubes.in(s), sampling.max_turn);
     // A turn at which the radius is at its least; a little more, so that rounding changes nothing.
-    const double tight = std::cos(std::min(1.01 * sampling.most_turn / finest, 3.1));
+    const double tight = std::cos(std::min(1.01 * sampling.max_turn / finest, 3.1));
     const double radius2 = sampling.spacing * sampling.spacing;
     geometry::PackedCubes::Block block;
     for (const auto& own : cubes.all()) {
@@ -115,7 +115,7 @@ void follow_curvature(Candidates& all, const SurfaceSampling& sampling) {
             if (least < tight) break;
         }
         const double turn = std::acos(std::clamp(least, -1.0, 1.0));
-        all.radius[own.index] *= std::clamp(sampling.most_turn / std::max(turn, 1e-9), finest, 1.0);
+        all.radius[own.index] *= std::clamp(sampling.max_turn / std::max(turn, 1e-9), finest, 1.0);
     }
 }
 
@@ -141,7 +141,7 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     const std::vector<std::uint32_t> order = drawn_order(count, Random{mix(sampling.seed)});
     geometry::GrowingCubes cubes(count / 8, sampling.spacing);
     std::vector<std::uint32_t> kept;
-    const double widest = least_distance * sampling.spacing;
+    const double widest = min_distance * sampling.spacing;
     for (std::size_t n = 0; n < count; ++n) {
         // The order is random, so each candidate and what is near it would come from far away in memory.
         if (n + 32 < count) __builtin_prefetch(&all.position[order[n + 32]]);
@@ -157,9 +157,9 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
             return free;
         });
         if (!free) continue;
-        if (kept.size() == sampling.most_points)
+        if (kept.size() == sampling.max_points)
             throw Error(fmt::format("a spacing of {:.4g} mm gives more than {} points; take a larger one",
-                                    1e3 * sampling.spacing, sampling.most_points));
+                                    1e3 * sampling.spacing, sampling.max_points));
         cubes.add(all.position[c]);
         kept.push_back(c);
     }
@@ -214,11 +214,11 @@ std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const
     const double densest = sampling.follow_curvature ? 4.0 : 1.0;
     const double per_area = candidates_per_point * densest / (sampling.spacing * sampling.spacing);
     if (!std::isfinite(area)) throw Error("a surface with corners that are no numbers cannot be sampled");
-    if (area / (sampling.spacing * sampling.spacing) > 2.0 * static_cast<double>(sampling.most_points))
+    if (area / (sampling.spacing * sampling.spacing) > 2.0 * static_cast<double>(sampling.max_points))
         throw Error(fmt::format("a spacing of {:.4g} mm on {:.4g} mm² gives more than {} points; take a larger one",
-                                1e3 * sampling.spacing, 1e6 * area, sampling.most_points));
+                                1e3 * sampling.spacing, 1e6 * area, sampling.max_points));
     Candidates all = scatter(surface, area, per_area, sampling);
-    all.radius.assign(all.position.size(), least_distance * sampling.spacing);
+    all.radius.assign(all.position.size(), min_distance * sampling.spacing);
     if (sampling.follow_curvature) {
         if (map)
             for (std::size_t i = 0; i < all.position.size(); ++i)
@@ -255,14 +255,14 @@ std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const Sur
 }
 
 std::size_t label_facing(std::span<SurfacePoint> points, const Voxmap& other, const Pose& into_map, double reach,
-                         double most_angle, std::uint8_t label) {
+                         double max_angle, std::uint8_t label) {
     std::size_t count = 0;
     for (SurfacePoint& point : points) {
         const volume::Sample there = other.smooth_sample(into_map.apply(point.position));
         const double steep = glm::length(there.gradient);
         if (!there.inside || std::abs(there.value) > reach || !(steep > 0.0)) continue;
         const double against = -glm::dot(into_map.rotate(point.normal), there.gradient) / steep;
-        if (against < std::cos(most_angle)) continue;
+        if (against < std::cos(max_angle)) continue;
         point.label = label;
         ++count;
     }

@@ -22,7 +22,7 @@ namespace {
 // Paths of steps to the 26 neighbours are longer than a straight line by at most this factor:
 // √(1 + (√2 − 1)² + (√3 − √2)²).
 constexpr double lattice_factor = 1.1284;
-constexpr std::size_t most_samples = std::size_t(1) << 30;
+constexpr std::size_t max_samples = std::size_t(1) << 30;
 
 double steepness_of(const volume::Grid& grid, const RunJobs& run) {
     struct Step {
@@ -77,7 +77,7 @@ Voxmap make_voxmap(volume::Grid distance, const RunJobs& run) {
         if (!(spacing > 0.0) || !std::isfinite(spacing)) throw Error("a voxmap's spacing must be positive");
     }
     if (!is_finite(distance.origin)) throw Error("a voxmap's origin must be finite");
-    if (distance.count() > most_samples || distance.values.size() != distance.count())
+    if (distance.count() > max_samples || distance.values.size() != distance.count())
         throw Error(fmt::format("a voxmap of {} x {} x {} samples is too large (2^30 at most) or incomplete",
                                 distance.size[0], distance.size[1], distance.size[2]));
     double most = 0.0;
@@ -126,7 +126,7 @@ volume::Sample Voxmap::smooth_sample(const Vec3& position) const noexcept {
     return {at.value, at.slope / grid.spacing, true};
 }
 
-double Voxmap::least_within(const Vec3& position, double radius) const noexcept {
+double Voxmap::min_within(const Vec3& position, double radius) const noexcept {
     if (grid.values.empty()) return far;
     const Vec3 last = grid.origin + Vec3(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1) * grid.spacing;
     const Vec3 nearest = glm::clamp(position, grid.origin, last), away = position - nearest;

@@ -28,7 +28,7 @@ struct Voxmap {
     volume::Sample smooth_sample(const Vec3& position) const noexcept;
     /// Returns a lower bound of either interpolant within `radius` of `position`, used to cull whole groups of points.
     /// Outside the grid the bound is the distance to the grid.
-    double least_within(const Vec3& position, double radius) const noexcept;
+    double min_within(const Vec3& position, double radius) const noexcept;
 };
 
 /// Makes a voxmap of an unchanged distance grid. Throws Error for fewer than 2 samples along an axis, spacings that are

@@ -8,8 +8,8 @@ namespace tactus::control {
 
 namespace {
 
-constexpr double most_force = 1e6, most_position = 1e3;  // N, m
-constexpr int most_lowerings = 10;  // of a gain that is chosen here, by a fifth each
+constexpr double max_force = 1e6, max_position = 1e3;  // N, m
+constexpr int max_lowerings = 10;  // of a gain that is chosen here, by a fifth each
 
 }  // namespace
 
@@ -47,7 +47,7 @@ bool AdmittanceControl::set(const ControllerSettings& settings) noexcept {
     if (!settings.allow_unstable && !(gain > 0.0 && gain < limit)) return false;
     const bool is_known = engaged_ && gain == gain_ && limit == limit_;
     for (int lower = 0; !is_known && !settles_at(gain, settings); ++lower, gain *= 0.8)
-        if (!is_chosen || lower == most_lowerings) return false;
+        if (!is_chosen || lower == max_lowerings) return false;
     if (engaged_) {
         // The difference of both objects' positions under the present force decays slowly.
         VirtualObject old = object_, made = object_;
@@ -63,7 +63,7 @@ bool AdmittanceControl::set(const ControllerSettings& settings) noexcept {
 
 double AdmittanceControl::tick(double force, double position, Fault sensed, int periods, bool slips) noexcept {
     // Forces and positions beyond any finger's would make the object overflow.
-    const bool sane = std::abs(force) < most_force && std::abs(position) < most_position;
+    const bool sane = std::abs(force) < max_force && std::abs(position) < max_position;
     if (sensed == Fault::none && !sane) sensed = Fault::not_finite;
     if (sensed == Fault::none && fault_ == Fault::none && is_stuck(force, position, slips))
         sensed = Fault::stuck_encoder;

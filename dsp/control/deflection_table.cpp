@@ -24,7 +24,7 @@ double DeflectionTable::follow(double deflection, double f) const noexcept {
     return std::clamp(deflection, in, std::max(in, out));
 }
 
-double DeflectionTable::least_stiffness() const {
+double DeflectionTable::min_stiffness() const {
     double least = std::numeric_limits<double>::infinity();
     for (const auto* curve : {&loading, &unloading})
         for (std::size_t i = 1; i < force.size(); ++i)

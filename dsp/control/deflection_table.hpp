@@ -18,7 +18,7 @@ struct DeflectionTable {
     /// New deflection under force `f` of an object at `deflection`. Real-time safe.
     double follow(double deflection, double f) const noexcept;
     /// Lowest stiffness of the table, N/m.
-    double least_stiffness() const;
+    double min_stiffness() const;
     /// Message that says what is wrong; empty when the table is valid.
     std::string fault() const;
 };

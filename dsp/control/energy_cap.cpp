@@ -43,7 +43,7 @@ Gift gift(const Vec3& force, const Start& start, double hold_s, double yield, do
 }  // namespace
 
 double EnergyCap::max_gain(const EnergyCapSettings& settings, double stiffness, double max_force) noexcept {
-    const double hold = settings.period_s, delay = settings.delay_s, mass = settings.least_mass;
+    const double hold = settings.period_s, delay = settings.delay_s, mass = settings.min_mass;
     const double force = std::min(max_force, std::sqrt(mass * stiffness) + stiffness * (hold + delay));
     const double reach = force * force * (hold + delay) / mass;
     return std::min(rest_J, reach * (hold + delay)) + force * settings.resolution + 0.2 * reach * delay;
@@ -73,7 +73,7 @@ EnergyCap::Motion EnergyCap::follow(const Vec3& away, double step, double slow, 
 
 /// The wrench that acted while the samples saw the last motion: that of `delay_s` ago.
 Wrench EnergyCap::acting() const noexcept {
-    const double ticks = std::clamp(settings_.delay_s / settings_.period_s, 0.0, static_cast<double>(most_delay));
+    const double ticks = std::clamp(settings_.delay_s / settings_.period_s, 0.0, static_cast<double>(max_delay));
     const auto whole = static_cast<std::size_t>(ticks);
     const double part = ticks - static_cast<double>(whole);
     return held_[whole] * (1.0 - part) + held_[whole + 1] * part;
@@ -81,7 +81,7 @@ Wrench EnergyCap::acting() const noexcept {
 
 /// Impulse of the forces that are under way when the coming hold begins to act, N·s and N·m·s.
 Wrench EnergyCap::under_way() const noexcept {
-    const double ticks = std::clamp(settings_.delay_s / settings_.period_s, 0.0, static_cast<double>(most_delay));
+    const double ticks = std::clamp(settings_.delay_s / settings_.period_s, 0.0, static_cast<double>(max_delay));
     Wrench sum;
     for (std::size_t i = 0; static_cast<double>(i) < ticks; ++i)
         sum = sum + held_[i] * (std::min(1.0, ticks - static_cast<double>(i)) * settings_.period_s);
@@ -112,9 +112,9 @@ void EnergyCap::account(double work, double elapsed_s, double granted_W, bool wa
     damped_ -= damped;
     grant_ -= refund;
     statistics_.granted += refund;
-    stored_ = std::clamp(stored_ + work + damped + refund, -most_J, most_J);
-    statistics_.most_stored = std::max(statistics_.most_stored, stored_);
-    statistics_.most_returned = std::max(statistics_.most_returned, -stored_);
+    stored_ = std::clamp(stored_ + work + damped + refund, -max_J, max_J);
+    statistics_.max_stored = std::max(statistics_.max_stored, stored_);
+    statistics_.max_returned = std::max(statistics_.max_returned, -stored_);
 }
 
 Wrench EnergyCap::tick(const Wrench& wanted, const Wrench& committed, const Pose& hand, double elapsed_s,
@@ -184,8 +184,8 @@ Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& t
         start.gained += impulse / least;
         return Side{start, trust, motion.doubt, hold_s_ / least};
     };
-    const Side force_side = side_of(acted.force, coming.force, moved, settings_.least_mass),
-               torque_side = side_of(acted.torque, coming.torque, turned, settings_.least_inertia);
+    const Side force_side = side_of(acted.force, coming.force, moved, settings_.min_mass),
+               torque_side = side_of(acted.torque, coming.torque, turned, settings_.min_inertia);
     const auto ahead = [&](const Vec3& force, const Side& side) {
         Gift g = gift(force, side.start, hold_s_, side.yield, side.trust);
         // The speed of a fast hand is known to a step in its window.
@@ -225,8 +225,8 @@ Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& t
     }
     const double force = glm::length(wanted.force - out.force), torque = glm::length(wanted.torque - out.torque);
     statistics_.capped += force > 0.0 || torque > 0.0;
-    statistics_.most_removed_force = std::max(statistics_.most_removed_force, force);
-    statistics_.most_removed_torque = std::max(statistics_.most_removed_torque, torque);
+    statistics_.max_removed_force = std::max(statistics_.max_removed_force, force);
+    statistics_.max_removed_torque = std::max(statistics_.max_removed_torque, torque);
     return out;
 }
 

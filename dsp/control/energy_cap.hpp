@@ -18,16 +18,16 @@ struct EnergyCapSettings {
     double angular_resolution = 200e-6; ///< rad, step of the reported orientation
     double delay_s = 0.0;               ///< of the device: from a motion to its sample plus from a force to the hand
     double damping = StatedHand::damping;       ///< N·s/m, that a hand and its device have at least
-    double least_mass = StatedHand::mass;       ///< kg, of the lightest hand with its device, for the motion ahead
-    double least_inertia = StatedHand::inertia; ///< kg·m²
+    double min_mass = StatedHand::mass;       ///< kg, of the lightest hand with its device, for the motion ahead
+    double min_inertia = StatedHand::inertia; ///< kg·m²
 };
 
 struct EnergyCapStatistics {
     std::uint64_t capped = 0;        ///< ticks whose force or torque was shrunk
-    double most_removed_force = 0.0;   ///< N, largest shrinking in a tick
-    double most_removed_torque = 0.0;  ///< N·m
-    double most_stored = 0.0;          ///< J
-    double most_returned = 0.0;        ///< J beyond what was put in during one contact, by what the samples show
+    double max_removed_force = 0.0;   ///< N, largest shrinking in a tick
+    double max_removed_torque = 0.0;  ///< N·m
+    double max_stored = 0.0;          ///< J
+    double max_returned = 0.0;        ///< J beyond what was put in during one contact, by what the samples show
     double granted = 0.0;              ///< J given out of granted power
 };
 
@@ -61,9 +61,9 @@ public:
     static constexpr double return_s = 0.1;  ///< in which a force that was taken from a hand at rest comes back
 
     /// Forces of so many periods are remembered: a longer delay cannot be accounted for.
-    static constexpr std::size_t most_delay = 64;
+    static constexpr std::size_t max_delay = 64;
     static constexpr double longest_delay_s(double period_s) noexcept {
-        return static_cast<double>(most_delay) * period_s;
+        return static_cast<double>(max_delay) * period_s;
     }
 
     /// Bound on the energy that a contact gives a hand of `damping` beyond 1.05 of what it took, J: with T the period, t_d the delay,
@@ -89,7 +89,7 @@ public:
     const EnergyCapStatistics& statistics() const noexcept { return statistics_; }
 
 private:
-    static constexpr double farthest_m = 10.0, most_J = 1e6;
+    static constexpr double farthest_m = 10.0, max_J = 1e6;
 
     /// Translation or rotation since the last call, and what is to be expected.
     struct Motion {
@@ -120,7 +120,7 @@ private:
     EnergyCapStatistics statistics_;
     Tracked place_, turn_;
     Pose counted_;  // the hand's, as far as its motion counts
-    std::array<Wrench, most_delay + 2> held_{};  // committed forces, newest first
+    std::array<Wrench, max_delay + 2> held_{};  // committed forces, newest first
     double stored_ = 0.0, grant_ = 0.0, damped_ = 0.0, hold_s_ = 0.001;
     double force_level_ = 1.0, torque_level_ = 1.0;  // share that is felt after the cap has acted
     double doubt_ = 0.0;  // J², variance of the store by the steps of the samples

@@ -72,12 +72,12 @@ void ForceLimiter::hold_off(bool wanted) noexcept {
     faded_s_ = 0.0;
 }
 
-void ForceLimiter::recover(double least_ramp_s) noexcept {
+void ForceLimiter::recover(double min_ramp_s) noexcept {
     fault_ = Fault::none;
     has_counter_ = false;
     still_ticks_ = small_ticks_ = 0;
     ramped_s_ = 0.0;
-    slow_ramp_s_ = least_ramp_s;
+    slow_ramp_s_ = min_ramp_s;
 }
 
 void ForceLimiter::recover_slowly(double ramp_s) noexcept {

@@ -89,8 +89,8 @@ public:
     /// body meanwhile is not thrown out. For intended changes. A slow ramp that was not over begins anew.
     void hold_off(bool wanted) noexcept;
 
-    /// Clears the fault; forces re-engage, and ramp in over at least `least_ramp_s` of ticks that are on time.
-    void recover(double least_ramp_s = 0.0) noexcept;
+    /// Clears the fault; forces re-engage, and ramp in over at least `min_ramp_s` of ticks that are on time.
+    void recover(double min_ramp_s = 0.0) noexcept;
 
     /// Clears the fault; forces ramp in over at least `ramp_s` of ticks that are on time, also when they are large already.
     /// Whoever calls it sees to it that a hand deep inside of a body is not thrown out: by an energy cap.

@@ -10,7 +10,7 @@ namespace {
 
 // A second of ticks of 1 ms can sum to just under a second.
 constexpr double rounding = 1.0 - 1e-9;
-constexpr double most_at_once = 2.0;
+constexpr double max_at_once = 2.0;
 
 }  // namespace
 
@@ -22,13 +22,13 @@ void LateReturn::prepare(double period_s, double at_least_s) noexcept {
 }
 
 bool LateReturn::leaves_out_too_many(double ticks) noexcept {
-    if (ticks > most_at_once) return true;
+    if (ticks > max_at_once) return true;
     for (int n = 0; n < static_cast<int>(ticks); ++n) {
         double& at = left_out_at_[next_left_out_];  // the oldest, once there are so many
-        if (left_out_ == most_left_out && now_s_ - at < on_time_s * rounding) return true;
+        if (left_out_ == max_left_out && now_s_ - at < on_time_s * rounding) return true;
         at = now_s_;
         next_left_out_ = (next_left_out_ + 1) % left_out_at_.size();
-        left_out_ = std::min(left_out_ + 1, most_left_out);
+        left_out_ = std::min(left_out_ + 1, max_left_out);
     }
     return false;
 }
@@ -49,14 +49,14 @@ void LateReturn::tick(bool is_late, bool is_quiet, double elapsed_s) noexcept {
 void LateReturn::lose() noexcept {
     const auto recent =
         std::count_if(at_.begin(), at_.begin() + count_, [&](double t) { return now_s_ - t < window_s; });
-    needs_hand_ = needs_hand_ || recent >= most_returns;
+    needs_hand_ = needs_hand_ || recent >= max_returns;
     is_lost_ = true;
     comes_in_ = false;
 }
 
 bool LateReturn::returns() noexcept {
     if (needs_hand_ || on_time_ < wait_s_ * rounding || quiet_ < quiet_s * rounding) return false;
-    if (count_ == most_returns) {
+    if (count_ == max_returns) {
         std::shift_left(at_.begin(), at_.end(), 1);
         --count_;
     }

@@ -15,9 +15,9 @@ public:
     static constexpr double on_time_s = 1.0;  ///< ... ticks were on time for this long, before forces come back
     /// That may be left out within `on_time_s`, one or two at once: a busy machine always leaves out some, and a force
     /// that is held for 2 ms harms nobody.
-    static constexpr int most_left_out = 10;
+    static constexpr int max_left_out = 10;
     static constexpr double ramp_s = 0.5;  ///< in which they then come in, at least
-    static constexpr int most_returns = 3;  ///< in `window_s`; the next loss waits for a person
+    static constexpr int max_returns = 3;  ///< in `window_s`; the next loss waits for a person
     static constexpr double window_s = 60.0;
     /// A person who lets forces come back is there for this long after they may come at the earliest.
     static constexpr double attended_s = 10.0;
@@ -41,7 +41,7 @@ public:
     /// Each tick of that time. A return counts from when forces are on, which may be long after they may come back;
     /// `are_full`: the ramp is over.
     void come_in(bool are_on, bool are_full) noexcept;
-    /// Forces come back by themselves no more: they did so `most_returns` times within `window_s` before they were lost.
+    /// Forces come back by themselves no more: they did so `max_returns` times within `window_s` before they were lost.
     bool needs_hand() const noexcept { return needs_hand_; }
     /// A person lets forces come back: earlier returns are forgotten. If they do not come back in the time of
     /// `is_attended`, forces that needed a person before need one again.
@@ -55,8 +55,8 @@ private:
 
     double period_s_ = 0.001, wait_s_ = on_time_s;
     double now_s_ = 0.0, on_time_ = 0.0, quiet_ = 0.0, attended_since_ = 0.0;
-    std::array<double, most_returns> at_{};  // times of the last returns
-    std::array<double, most_left_out> left_out_at_{};  // times of the last ticks that were left out, a ring
+    std::array<double, max_returns> at_{};  // times of the last returns
+    std::array<double, max_left_out> left_out_at_{};  // times of the last ticks that were left out, a ring
     std::size_t next_left_out_ = 0;
     int count_ = 0, left_out_ = 0;  // entries of the two
     bool needs_hand_ = false, is_lost_ = false, comes_in_ = false;

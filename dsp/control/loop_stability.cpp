@@ -12,12 +12,12 @@ namespace tactus::control {
 
 namespace {
 
-constexpr int most_delay = 8;
+constexpr int max_delay = 8;
 
 /// Indices of the loop's parts in its state.
 enum : std::size_t { finger, speed, wanted, wanted_speed, smoothed, told };
 
-using State = std::array<double, most_loop_states>;
+using State = std::array<double, max_loop_states>;
 
 State advance(const LoopModel& m, const HeldStep& object, int delay, const State& s) noexcept {
     const double force = -m.hand_stiffness * s[finger];
@@ -47,7 +47,7 @@ LoopModel with(LoopModel model, const ObjectSettings& object, bool in_contact) n
     model.damping = in_contact ? object.damping : object.free_damping;
     model.mass = object.mass;
     if (in_contact && object.kind == ObjectKind::table) {
-        model.stiffness = object.table->least_stiffness();
+        model.stiffness = object.table->min_stiffness();
         model.damping = model.mass = 0.0;
         model.is_wall = model.is_wall || !std::isfinite(model.stiffness);
     }
@@ -57,7 +57,7 @@ LoopModel with(LoopModel model, const ObjectSettings& object, bool in_contact) n
 }  // namespace
 
 LoopMatrix loop_matrix(const LoopModel& model) noexcept {
-    const int delay = std::clamp(model.delay, 0, most_delay);
+    const int delay = std::clamp(model.delay, 0, max_delay);
     const HeldStep object =
         model.is_wall ? HeldStep{} : held_step(model.stiffness, model.damping, model.mass, model.period);
     LoopMatrix matrix;

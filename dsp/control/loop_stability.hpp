@@ -27,10 +27,10 @@ struct LoopModel {
     bool operator==(const LoopModel&) const = default;
 };
 
-inline constexpr std::size_t most_loop_states = 14;
+inline constexpr std::size_t max_loop_states = 14;
 
 struct LoopMatrix {
-    std::array<std::array<double, most_loop_states>, most_loop_states> at{};
+    std::array<std::array<double, max_loop_states>, max_loop_states> at{};
     std::size_t size = 0;
 };
 

@@ -28,7 +28,7 @@ struct DynamicState {
 /// exchange. With equal inertias the gyroscopic torque is zero.
 ///
 /// No point moves further than `step` beyond the free distance between two evaluations: a faster tick is divided into up
-/// to `most_parts` steps. A body that is faster still is held back. One that went through the middle of a wall is put
+/// to `max_parts` steps. A body that is faster still is held back. One that went through the middle of a wall is put
 /// back and stopped (wall_crossing.hpp).
 class DynamicCoupling {
 public:
@@ -58,7 +58,7 @@ public:
                 const double free = std::max(0.0, static_cast<double>(contact.clearance(state_.proxy)));
                 const double most = settings.step + free;
                 if (part == 0 && travel > most) {
-                    parts = static_cast<int>(std::ceil(std::min<double>(most_parts, travel / most)));
+                    parts = static_cast<int>(std::ceil(std::min<double>(max_parts, travel / most)));
                     displacement = displacement_in(h / parts, drive);
                     travel = travel_of(displacement);
                 }
@@ -128,7 +128,7 @@ private:
         turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
     }
 
-    static constexpr int most_parts = 8;
+    static constexpr int max_parts = 8;
     DynamicState state_;
     WallGuard guard_;
     Pose hand_, proxy_before_;

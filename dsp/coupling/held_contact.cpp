@@ -16,15 +16,15 @@ std::size_t nodes_of(std::size_t points) { return 2 * (points / contact::chunk_p
 /// Distance that every point of the shell can move without touching the map; computed from the upper levels of its
 /// tree.
 double clearance_of(const contact::ContactPair& pair, double enough) noexcept {
-    constexpr std::size_t most_nodes = 96;
+    constexpr std::size_t max_nodes = 96;
     const Pose into_map = pair.map_pose.inverse() * pair.shell_pose;
     const auto& nodes = pair.shell->nodes;
-    const std::size_t count = std::min(nodes.size(), most_nodes);
+    const std::size_t count = std::min(nodes.size(), max_nodes);
     double least = enough;
     for (std::size_t n = 0; n < count && least > 0.0; ++n) {
         const contact::ShellNode& node = nodes[n];
         if (node.children > 0 && node.first_child + node.children <= count) continue;
-        least = std::min(least, pair.map->least_within(into_map.apply(node.centre), node.radius) / pair.map->steepness);
+        least = std::min(least, pair.map->min_within(into_map.apply(node.centre), node.radius) / pair.map->steepness);
     }
     return std::max(least, 0.0);
 }
@@ -44,7 +44,7 @@ double extent_of(const Body& body) noexcept {
 
 }  // namespace
 
-HeldContact::HeldContact(std::size_t most_points) : kernel_(nodes_of(most_points)) {}
+HeldContact::HeldContact(std::size_t max_points) : kernel_(nodes_of(max_points)) {}
 
 void HeldContact::set(const Scene& scene, int held, const Pose& grip, const contact::ContactLaw& law, bool both_ways,
                       std::size_t budget) noexcept {

@@ -15,8 +15,8 @@ namespace tactus::coupling {
 
 class HeldContact {
 public:
-    /// Capacity for pointshells with `most_points` points in total; all memory is allocated here.
-    explicit HeldContact(std::size_t most_points);
+    /// Capacity for pointshells with `max_points` points in total; all memory is allocated here.
+    explicit HeldContact(std::size_t max_points);
 
     /// Sets body `held` of `scene` (which must stay alive), at pose handle ∘ `grip`, against all others. Bodies of the
     /// same unit move with it from their poses in `scene` and touch the others too. `both_ways`: also tests the others'
@@ -44,9 +44,9 @@ private:
     contact::PointshellContact kernel_;
     contact::ContactLaw law_;
     // The maximum number of pairs: one half of the objects against the other half.
-    static constexpr std::size_t most_pairs = Scene::most_objects * Scene::most_objects / 2;
-    std::array<contact::ContactPair, most_pairs> pairs_;
-    std::array<Pose, most_pairs> beside_;  ///< pose of a pair's moving body in the frame of the held one
+    static constexpr std::size_t max_pairs = Scene::max_objects * Scene::max_objects / 2;
+    std::array<contact::ContactPair, max_pairs> pairs_;
+    std::array<Pose, max_pairs> beside_;  ///< pose of a pair's moving body in the frame of the held one
     std::size_t count_ = 0, budget_ = 0;
     double reach_ = 0.0, gyration2_ = 0.0, measured_ = 0.0;  ///< m, m², number of points in them
     double safe_step_ = std::numeric_limits<double>::infinity();

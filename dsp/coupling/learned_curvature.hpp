@@ -21,7 +21,7 @@ public:
     bool is_trusted() noexcept { return trust_ > 0 || ++passed_over_ % chance_every == 0; }
     /// Reports the result of a whole step that used it.
     void judge(bool went_down) noexcept {
-        trust_ = went_down ? std::min(trust_ + 1, most_trust) : std::max(trust_ - 2, -most_trust);
+        trust_ = went_down ? std::min(trust_ + 1, max_trust) : std::max(trust_ - 2, -max_trust);
     }
 
     geometry::Matrix6 added_to(const geometry::Matrix6& known) const noexcept {
@@ -45,16 +45,16 @@ public:
             steps += s[i] * s[i] * scale * scale;
         }
         // SR1 safeguard: a remainder nearly orthogonal to the step holds no curvature along it.
-        if (!(std::abs(along) > least_share * std::sqrt(rests * steps))) return;
+        if (!(std::abs(along) > min_share * std::sqrt(rests * steps))) return;
         for (std::size_t i = 0; i < 6; ++i)
             for (std::size_t j = 0; j < 6; ++j) extra_[6 * i + j] += rest[i] * rest[j] / along;
     }
 
 private:
-    static constexpr double least_share = 1e-3;
-    static constexpr int most_trust = 8, chance_every = 16;
+    static constexpr double min_share = 1e-3;
+    static constexpr int max_trust = 8, chance_every = 16;
     geometry::Matrix6 extra_{};
-    int trust_ = most_trust / 2;
+    int trust_ = max_trust / 2;
     unsigned passed_over_ = 0;
 };
 

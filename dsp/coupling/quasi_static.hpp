@@ -142,7 +142,7 @@ private:
         return b;
     }
 
-    bool may_move() const noexcept { return left_ > least_way && left_shift_ > least_way && left_turn_ > least_turn; }
+    bool may_move() const noexcept { return left_ > min_way && left_shift_ > min_way && left_turn_ > min_turn; }
     bool may_evaluate() const noexcept { return state_.evaluations < settings.evaluations; }
 
     double residual(const Balance& b) const noexcept {
@@ -175,7 +175,7 @@ private:
                 return true;
         }
         if (!find_step(step, known, now, contact)) return false;
-        for (int halving = 0; halving <= most_halvings && may_evaluate(); ++halving) {
+        for (int halving = 0; halving <= max_halvings && may_evaluate(); ++halving) {
             if (try_step(step, known, now, contact)) return true;
             for (double& s : step.displacement) s *= 0.5;
             step.slope *= 0.5;
@@ -249,8 +249,8 @@ private:
                 glm::normalize(rotation_by(Vec3(step[3], step[4], step[5])) * pose.orientation)};
     }
 
-    static constexpr int most_halvings = 6;
-    static constexpr double least_way = 1e-9, least_turn = 1e-8;  // m, rad
+    static constexpr int max_halvings = 6;
+    static constexpr double min_way = 1e-9, min_turn = 1e-8;  // m, rad
     LearnedCurvature curvature_;
     WallGuard guard_;
     QuasiStaticState state_;

@@ -41,9 +41,9 @@ struct SceneObject {
 /// Up to sixteen bodies with their poses, by value: a scene is a snapshot.
 struct Scene {
     static constexpr std::string_view wire_name = "scene";
-    static constexpr std::size_t most_objects = 16;
+    static constexpr std::size_t max_objects = 16;
 
-    std::array<SceneObject, most_objects> objects;
+    std::array<SceneObject, max_objects> objects;
     std::size_t count = 0;
     std::int64_t version = 0;
     std::uint64_t content_hash = 0;

@@ -11,7 +11,7 @@ namespace tactus::coupling {
 namespace {
 
 constexpr double settled = 1e-9;  // m: a shorter move counts as none
-constexpr int most_moves = 200;
+constexpr int max_moves = 200;
 constexpr double regrip = 0.8;  // of the sliding cone: a proxy this far inside is at rest
 
 }  // namespace
@@ -76,7 +76,7 @@ bool SurfaceProxy::is_open(const Vec3& a, const View& from, const Vec3& b, const
 Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept {
     View here = look(from, surfaces);
     double share = 1.0;  // of the distance to try: reduced after a move that made no progress
-    for (int move = 0; move < most_moves; ++move) {
+    for (int move = 0; move < max_moves; ++move) {
         Vec3 wanted = goal;
         if (settings.shading) wanted = nearest_within(goal, from, here.planes.shaded().all());
         const Vec3 target = nearest_within(wanted, from, here.planes.all());
@@ -152,7 +152,7 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
     // Farther than any room: an input fault.
     if (!is_finite(goal) || !(glm::length(goal) < 1e3)) return state_;
     if (!started_) reset(goal);
-    surfaces = surfaces.first(std::min(surfaces.size(), most_surfaces));
+    surfaces = surfaces.first(std::min(surfaces.size(), max_surfaces));
     shape_ = settings.shape;
     shape_.radius = std::max(shape_.radius, point_radius);
     budget_.triangles = max_triangles;

@@ -43,7 +43,7 @@ struct ProxyState {
 
 class SurfaceProxy {
 public:
-    static constexpr std::size_t most_surfaces = 8;
+    static constexpr std::size_t max_surfaces = 8;
     /// Triangles that one update tests at most. A proxy that needs more stays where it has proven space to be free, and
     /// goes on from there in the next update.
     static constexpr std::int64_t max_triangles = 6400;
@@ -63,7 +63,7 @@ private:
 
     struct View {
         ProxyPlanes planes;
-        std::array<ProxySurface::Level, most_surfaces> levels;
+        std::array<ProxySurface::Level, max_surfaces> levels;
         double deepest = 0.0;  ///< m, greatest penetration of the proxy
     };
 
@@ -84,7 +84,7 @@ private:
     double friction_ = unset;  // coefficient now; unset: that of static friction
     ProxyState state_;
     bool started_ = false;
-    std::array<ProxySurface, most_surfaces> seen_;  ///< of the last update
+    std::array<ProxySurface, max_surfaces> seen_;  ///< of the last update
     std::size_t seen_count_ = 0;
 };
 

@@ -24,7 +24,7 @@ namespace {
 constexpr double overlap = 2e-6;
 constexpr double ledge = 3e-3;  // m: what is free in front of a ledge
 constexpr double crumb = 8e-9;  // m³: smaller parts fall off and are removed
-constexpr double most_samples = 150e6;
+constexpr double max_samples = 150e6;
 
 /// A cut in the frame of the guide.
 struct Slot {
@@ -202,7 +202,7 @@ private:
         }
         low_ -= 2.0 * set_.voxel, high_ += 2.0 * set_.voxel;
         const Vec3 size = (high_ - low_) / set_.voxel;
-        if (!(size.x * size.y * size.z < most_samples))
+        if (!(size.x * size.y * size.z < max_samples))
             throw Error(fmt::format(
                 "the guide would be {:.0f} x {:.0f} x {:.0f} mm, too much for a voxel of {:.2f} mm: make one guide per "
                 "cut, or take a coarser voxel",

@@ -113,15 +113,15 @@ Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTre
         });
     });
     Seat seat;
-    seat.least_distance = infinity;
+    seat.min_distance = infinity;
     Vec3 middle(0.0);
     for (const Part& part : parts) {
         seat.contact_area += part.contact, seat.relieved_area += part.relieved;
-        seat.least_distance = std::min(seat.least_distance, part.least);
+        seat.min_distance = std::min(seat.min_distance, part.least);
         if (!part.is_free && seat.is_path_free) seat.is_path_free = false, seat.blocked_at = part.blocked;
         for (const Facet& f : part.facets) middle += f.area * f.middle;
     }
-    seat.play = most_play, seat.play_angle = most_play_angle;
+    seat.play = max_play, seat.play_angle = max_play_angle;
     if (!(seat.contact_area > 0.0)) return seat;
     middle /= seat.contact_area;
     double spread = 0.0;
@@ -149,9 +149,9 @@ Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTre
             }
     }
     const auto moves = geometry::symmetric_eigen<3>(move), turns = geometry::symmetric_eigen<3>(turn);
-    seat.play = std::min(most_play, gap * std::sqrt(moves.value[2]));
+    seat.play = std::min(max_play, gap * std::sqrt(moves.value[2]));
     seat.play_direction = Vec3(moves.vector[2][0], moves.vector[2][1], moves.vector[2][2]);
-    seat.play_angle = std::min(most_play_angle, gap / size * std::sqrt(turns.value[2]));
+    seat.play_angle = std::min(max_play_angle, gap / size * std::sqrt(turns.value[2]));
     return seat;
 }
 

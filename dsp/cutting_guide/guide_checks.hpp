@@ -29,7 +29,7 @@ std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, 
 struct Seat {
     double contact_area = 0.0;  ///< m²: of the faces that look at the bone, at `offset` ± 0.1 mm from it
     double relieved_area = 0.0;  ///< m²: of those that are farther, up to 4 mm: undercuts of the approach
-    double least_distance = 0.0;  ///< m, of any part of the guide from the bone; negative values do not occur
+    double min_distance = 0.0;  ///< m, of any part of the guide from the bone; negative values do not occur
     bool is_path_free = true;  ///< no part meets bone on 60 mm along the removal, nor on the way back
     Vec3 blocked_at{0.0};  ///< where it does, on the guide
     double play = 0.0;  ///< m, of its middle, in the direction in which the bone holds it least
@@ -39,10 +39,10 @@ struct Seat {
 };
 
 /// Most that `Seat::play` and `Seat::play_angle` are: beyond, linear play means nothing, and the bone does not hold.
-inline constexpr double most_play = 20e-3, most_play_angle = 0.5;  // m, rad
+inline constexpr double max_play = 20e-3, max_play_angle = 0.5;  // m, rad
 
 /// Play: all motions for which contact faces move by no more than `gap` along their normals (root of the mean square, so
-/// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives most_play.
+/// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives max_play.
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
              double offset, double gap, const RunJobs& run);
 

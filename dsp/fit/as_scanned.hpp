@@ -15,7 +15,7 @@ struct AsScannedSettings {
     double moved = 1e-3;  ///< m: greatest root mean square displacement of the touching points
     double touching = 0.3e-3;  ///< m: surfaces closer than this with opposite normals are in contact
     double share = 0.5;  ///< minimum fraction of the contact area of the fit that is also in contact in the scan
-    double least_area = 10e-6;  ///< m² in contact in the scan: less is chance
+    double min_area = 10e-6;  ///< m² in contact in the scan: less is chance
 };
 
 /// Returns whether two fragments of one scan already touch, at the poses in their files, where a fit places them.

@@ -9,7 +9,7 @@
 
 namespace tactus::fit {
 
-void find_free(Fit& fit, const geometry::Matrix6& stiffness, double radius, double least_hold) {
+void find_free(Fit& fit, const geometry::Matrix6& stiffness, double radius, double min_hold) {
     const double lever = std::max(radius, 1e-6);
     const double weight = stiffness[0] + stiffness[7] + stiffness[14];  // directions have unit length: Σ k n·n
     geometry::Matrix6 m{};
@@ -20,7 +20,7 @@ void find_free(Fit& fit, const geometry::Matrix6& stiffness, double radius, doub
     const geometry::SymmetricEigen<6> eigen = geometry::symmetric_eigen<6>(m);
     fit.hold = eigen.value;
     fit.free.clear();
-    for (std::size_t n = 0; n < 6 && eigen.value[n] < least_hold; ++n) {
+    for (std::size_t n = 0; n < 6 && eigen.value[n] < min_hold; ++n) {
         const geometry::Vector6& v = eigen.vector[n];
         const Vec3 translation(v[0], v[1], v[2]), rotation(v[3], v[4], v[5]);
         const bool is_rotation = glm::length(rotation) > glm::length(translation);

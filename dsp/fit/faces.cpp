@@ -80,7 +80,7 @@ std::vector<std::vector<std::size_t>> split_faces(std::span<const contact::Surfa
     std::vector<int> face = grow(paint, touching, options, count);
     std::vector<double> area(static_cast<std::size_t>(count), 0.0);
     for (std::size_t n = 0; n < face.size(); ++n) area[static_cast<std::size_t>(face[n])] += paint.points[n].area;
-    const auto is_small = [&](int f) { return area[static_cast<std::size_t>(f)] < options.least_area; };
+    const auto is_small = [&](int f) { return area[static_cast<std::size_t>(f)] < options.min_area; };
     // Small pieces along edges between faces are absorbed from their borders inwards.
     for (bool changed = true; changed;) {
         changed = false;

@@ -16,7 +16,7 @@ struct FaceOptions {
     double smooth = 3e-3;  ///< m: scale over which a face's relief is averaged out
     double max_gap = 1.5e-3;       ///< m: painted points farther apart do not touch
     double bend = 0.75;  ///< rad: largest angle between a point's normal and the mean of its face
-    double least_area = 12e-6;  ///< m²: smaller faces are merged into an adjacent face, or dropped
+    double min_area = 12e-6;  ///< m²: smaller faces are merged into an adjacent face, or dropped
 };
 
 /// Indices of the painted points of each face, largest face first. Fracture faces meet at edges: a point belongs to a

@@ -55,8 +55,8 @@ void keep_distinct(std::vector<Candidate>& all, double gyration, double nearer) 
 }
 
 bool is_within_reach(const Pose& pose, const Pose& start, const FitSettings& settings) {
-    return glm::length(pose.position - start.position) < settings.most_way &&
-           glm::length(rotation_between(start.orientation, pose.orientation)) < settings.most_turn;
+    return glm::length(pose.position - start.position) < settings.max_way &&
+           glm::length(rotation_between(start.orientation, pose.orientation)) < settings.max_turn;
 }
 
 std::vector<Candidate> coarse(FitEnergy& energy, const std::vector<Pose>& starts, const FitSettings& settings,
@@ -140,16 +140,16 @@ std::string_view name_of(FitVerdict verdict) {
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings,
                  double far) noexcept {
     // Unrelated surfaces cross each other: their nearby distances are spread evenly.
-    const bool is_within = quality.score >= settings.least_score && quality.share >= settings.least_share &&
-                           quality.rms <= settings.most_rms * settings.sigma;
-    const bool is_likely = quality.score >= Acceptance::likely_score && quality.share >= settings.least_share &&
+    const bool is_within = quality.score >= settings.least_score && quality.share >= settings.min_share &&
+                           quality.rms <= settings.max_rms * settings.sigma;
+    const bool is_likely = quality.score >= Acceptance::likely_score && quality.share >= settings.min_share &&
                            margin >= Acceptance::likely_margin &&
                            quality.rms <= Acceptance::likely_rms * settings.sigma;
-    if (quality.overlap < settings.least_overlap || !(is_within || is_likely)) return FitVerdict::no_match;
+    if (quality.overlap < settings.min_overlap || !(is_within || is_likely)) return FitVerdict::no_match;
     if (is_free) return FitVerdict::sliding;
-    if (margin < settings.least_margin) return FitVerdict::ambiguous;
-    if (quality.penetration > settings.most_penetration) return FitVerdict::blocked;
-    return is_within && far <= settings.most_far ? FitVerdict::fit : FitVerdict::uncertain;
+    if (margin < settings.min_margin) return FitVerdict::ambiguous;
+    if (quality.penetration > settings.max_penetration) return FitVerdict::blocked;
+    return is_within && far <= settings.max_far ? FitVerdict::fit : FitVerdict::uncertain;
 }
 
 std::string_view answer_of(FitVerdict verdict) {
@@ -180,7 +180,7 @@ void widen_for(FitSettings& settings, const Vec3& spacing) noexcept {
     settings.polish = std::max(settings.polish, 0.3 * h);
     settings.intact = std::max(settings.intact, 0.3 * h);
     // A few dozen voxels of any two surfaces coincide somewhere.
-    settings.least_overlap = std::max(settings.least_overlap, 60.0 * h * h);
+    settings.min_overlap = std::max(settings.min_overlap, 60.0 * h * h);
 }
 
 FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed) {
@@ -228,7 +228,7 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     fit.margin = best.score > 0.0 ? std::clamp(1.0 - second / best.score, 0.0, 1.0) : 0.0;
     set_robust(energy, settings, 1.0);
     energy.look(best.pose);
-    find_free(fit, energy(best.pose, contact::ContactParts::all).stiffness, radius, settings.least_hold);
+    find_free(fit, energy(best.pose, contact::ContactParts::all).stiffness, radius, settings.min_hold);
     fit.pose = between_bodies(moving, fixed, best.pose);
     FitPrecisionSum sum(best.pose.position, best.pose.apply(moving.far));
     sum.add(moving, fixed, {}, energy.closed(best.pose));

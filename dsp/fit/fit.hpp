@@ -47,18 +47,18 @@ struct FitSettings {
     double polish_power = 6.0;  ///< exponent of the collinearity in the last steps
     double intact = 0.1e-3;  ///< m, scale of the final steps, which exclude chipped points
     double kerf = 0.0;  ///< m, mean width of bone lost over the whole faces; the fit leaves this gap open
-    double most_way = 25e-3, most_turn = 1.05;  ///< m and rad: limits of an extended fit's motion from its start
+    double max_way = 25e-3, max_turn = 1.05;  ///< m and rad: limits of an extended fit's motion from its start
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score
     double pull = 30.0;  ///< N, thesis mode: sum over all painted points
     double least_score = Acceptance::least_score;  ///< below it the result is no_match
-    double most_rms = Acceptance::most_rms;  ///< maximum rms distance in the overlap, fraction of sigma
-    double least_overlap = Acceptance::least_area;  ///< m²; a smaller overlap is chance: no_match
-    double least_share = Acceptance::least_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
-    double least_margin = Acceptance::least_margin;  ///< to the second best pose, as fraction of the best score
-    double most_far = Acceptance::most_far;  ///< m, at the far end: a less precise pose is uncertain
-    double least_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
-    double most_penetration = 0.5e-3;  ///< m
+    double max_rms = Acceptance::max_rms;  ///< maximum rms distance in the overlap, fraction of sigma
+    double min_overlap = Acceptance::min_area;  ///< m²; a smaller overlap is chance: no_match
+    double min_share = Acceptance::min_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
+    double min_margin = Acceptance::min_margin;  ///< to the second best pose, as fraction of the best score
+    double max_far = Acceptance::max_far;  ///< m, at the far end: a less precise pose is uncertain
+    double min_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
+    double max_penetration = 0.5e-3;  ///< m
 };
 
 /// Widens the scales for coarse scans, whose surfaces are no more precise than their voxels.

@@ -14,8 +14,8 @@ namespace {
 constexpr double outline_reach2 = 9e-6;  // m²: partners 3 mm apart count half
 constexpr double outline_corner = 0.3e-3;  // m: beyond this a step of the outline has constant force
 constexpr double chip_rim = 6.0;  // scales: how far the rounded rim of a chip reaches
-constexpr double least_intact = 0.2;  // of the weight
-constexpr double least_cosine = 0.5;  // mean of a face's slopes; less is no face with a direction to open along
+constexpr double min_intact = 0.2;  // of the weight
+constexpr double min_cosine = 0.5;  // mean of a face's slopes; less is no face with a direction to open along
 
 struct Pull {
     double energy, force, stiffness;  // per weight: force = d energy / d d
@@ -148,7 +148,7 @@ void FitEnergy::leave_out_chips(Side& side) noexcept {
         if (!chip_tree_.has_nearer(points[i], chip_rim * law.scale))
             after += kept_[i] = side.weight[i] * intact_weight(side.seen[i].value / law.scale);
     }
-    if (after >= least_intact * before) {
+    if (after >= min_intact * before) {
         side.weight.swap(kept_);
         return;
     }
@@ -185,7 +185,7 @@ Vec3 opening_direction(const FitSurface& moving, const FitSurface& fixed, const 
     const Vec3 both = 0.5 * (fixed.plane_normal - pose.rotate(moving.plane_normal));
     const double length = glm::length(both);
     // Faces that do not look at each other have none in common.
-    return length > least_cosine ? both / length : fixed.plane_normal;
+    return length > min_cosine ? both / length : fixed.plane_normal;
 }
 
 Vec3 FitEnergy::opening(const Pose& pose) const noexcept {
@@ -193,8 +193,8 @@ Vec3 FitEnergy::opening(const Pose& pose) const noexcept {
     // The length of a mean normal is the mean cosine of the relief's slopes, so that the gap is wider than the distance
     // of the surfaces.
     const Vec3 &fixed = fixed_->mean_normal, both = 0.5 * (fixed - pose.rotate(moving_->mean_normal));
-    const double cosine = glm::length(glm::length(both) > least_cosine ? both : fixed);
-    return law.kerf / std::max(cosine, least_cosine) * opening_direction(*moving_, *fixed_, pose);
+    const double cosine = glm::length(glm::length(both) > min_cosine ? both : fixed);
+    return law.kerf / std::max(cosine, min_cosine) * opening_direction(*moving_, *fixed_, pose);
 }
 
 Pose FitEnergy::closed(const Pose& pose, const Vec3& opening) noexcept {

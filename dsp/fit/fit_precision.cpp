@@ -18,9 +18,9 @@ namespace tactus::fit {
 namespace {
 
 constexpr double correlated = 3e-3;  // m
-constexpr double most_off = 0.4e-3;  // m: what is farther off the other face is chipped
-constexpr double least_against = 0.7;  // cosine of opposed normals
-constexpr std::size_t most_points = 500;  // of a face: the pairs are counted
+constexpr double max_off = 0.4e-3;  // m: what is farther off the other face is chipped
+constexpr double min_against = 0.7;  // cosine of opposed normals
+constexpr std::size_t max_points = 500;  // of a face: the pairs are counted
 
 struct Point {
     Vec3 place;
@@ -34,16 +34,16 @@ using Slope = std::array<double, 6>;
 void FitPrecisionSum::add(const FitSurface& moving, const FitSurface& fixed, const Pose& there,
                           const Pose& into) noexcept {
     const Mat3 rotation = glm::mat3_cast(into.orientation);
-    std::array<Point, most_points> points;
-    const std::size_t stride = moving.position.size() / most_points + 1;
+    std::array<Point, max_points> points;
+    const std::size_t stride = moving.position.size() / max_points + 1;
     std::size_t count = 0;
     double all = 0.0, mean = 0.0, squares = 0.0;
     double slopes[36] = {};
     for (std::size_t i = 0; i < moving.position.size(); i += stride) {
         const Vec3 place = into.position + rotation * moving.position[i];
         const volume::Sample here = fixed.field.sample(place);
-        if (!here.inside || std::abs(here.value) > most_off || !fixed.is_painted_near(place)) continue;
-        if (!(-glm::dot(rotation * moving.normal[i], here.gradient) > least_against)) continue;
+        if (!here.inside || std::abs(here.value) > max_off || !fixed.is_painted_near(place)) continue;
+        if (!(-glm::dot(rotation * moving.normal[i], here.gradient) > min_against)) continue;
         points[count++] = {place, here.value, moving.share[i]};
         all += moving.share[i];
         mean += moving.share[i] * here.value;

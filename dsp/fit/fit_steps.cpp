@@ -13,14 +13,14 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr double most_noise = 0.5;  // of the finest robust scale
-constexpr double least_scale = 2.0;  // standard deviations of the scans' noise
+constexpr double max_noise = 0.5;  // of the finest robust scale
+constexpr double min_scale = 2.0;  // standard deviations of the scans' noise
 // Share of the weight: where less is off the other bone, it is noise and the rim of the paint (2 to 8 % without chips).
-constexpr double least_chipped = 0.1;
+constexpr double min_chipped = 0.1;
 
 /// m, of the kernel of what is not chipped.
 double intact_scale(const FitEnergy& energy, const FitSettings& settings) noexcept {
-    return std::max(settings.intact, least_scale * energy.law.noise);
+    return std::max(settings.intact, min_scale * energy.law.noise);
 }
 
 /// One step of the solver from its pose, with the weights of that pose. Returns the length of the step, m.
@@ -74,13 +74,13 @@ void set_robust(FitEnergy& energy, const FitSettings& settings, double wider) no
 
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept {
     const bool is_last = step >= first_intact_step;
-    if (is_last && energy.law.chipped >= least_chipped) {
+    if (is_last && energy.law.chipped >= min_chipped) {
         energy.law.kernel = FitKernel::intact;
         energy.law.scale = intact_scale(energy, settings);
         return;
     }
     const double progress = std::min(1.0, static_cast<double>(step) / 5.0);
-    const double polish = is_last ? std::max(settings.polish, least_scale * energy.law.noise) : settings.polish;
+    const double polish = is_last ? std::max(settings.polish, min_scale * energy.law.noise) : settings.polish;
     energy.law.kernel = FitKernel::robust;
     energy.law.scale = settings.finest * std::pow(std::min(1.0, polish / settings.finest), progress);
     energy.law.power = settings.power + progress * std::max(0.0, settings.polish_power - settings.power);
@@ -90,7 +90,7 @@ void measure_noise(FitEnergy& energy, const FitSettings& settings, const Pose& p
     energy.look(pose);
     energy.law.noise = energy.noise();
     // No scan that is worth a fit is that noisy: half of the points are chipped.
-    if (energy.law.noise > most_noise * settings.finest) energy.law.noise = 0.0;
+    if (energy.law.noise > max_noise * settings.finest) energy.law.noise = 0.0;
     energy.law.chipped = energy.share_beyond(intact_scale(energy, settings));
 }
 

@@ -18,7 +18,7 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr std::size_t least_points = 30;
+constexpr std::size_t min_points = 30;
 constexpr double edge = 1.5e-3;  // m: points nearer to the paint are not part of the outline
 constexpr double across = 0.6;   // of an outline's normal along that of the paint, at most
 constexpr std::uint8_t own_label = 200;  // marks the one face of several that is being made
@@ -67,9 +67,9 @@ void take_paint(FitSurface& made, std::span<const contact::SurfacePoint> points,
         made.share.push_back(p.area);
         made.area += p.area;
     }
-    if (made.position.size() < least_points)
+    if (made.position.size() < min_points)
         throw Error(fmt::format("{} of {} surface points are painted; a fit needs at least {}: paint the fracture",
-                                made.position.size(), points.size(), least_points));
+                                made.position.size(), points.size(), min_points));
     if (!(made.area > 0.0)) throw Error("the painted points stand for no area");
     for (std::size_t i = 0; i < made.position.size(); ++i) {
         made.share[i] /= made.area;
@@ -100,7 +100,7 @@ volume::Grid layout_around(const FitSurface& made, const volume::Grid& distance,
         return std::ceil(extent.x / layout.spacing.x + 2.0) * std::ceil(extent.y / layout.spacing.y + 2.0) *
                std::ceil(extent.z / layout.spacing.z + 2.0);
     };
-    while (samples() > static_cast<double>(options.most_samples)) layout.spacing *= 1.25;
+    while (samples() > static_cast<double>(options.max_samples)) layout.spacing *= 1.25;
     const Vec3 from = distance.origin - made.centre;
     layout.origin = from + glm::floor((low - from) / layout.spacing) * layout.spacing;
     for (int axis = 0; axis < 3; ++axis)
@@ -162,7 +162,7 @@ void take_outline(FitSurface& made, std::span<const contact::SurfacePoint> point
         positions.push_back(p);
         normals.push_back(glm::normalize(point.normal));
     }
-    for (const std::size_t i : spread_evenly(positions, options.most_outline)) {
+    for (const std::size_t i : spread_evenly(positions, options.max_outline)) {
         made.outline.push_back(positions[i]);
         made.outline_normal.push_back(normals[i]);
     }
@@ -193,7 +193,7 @@ FitSurface make_fit_surface(std::span<const contact::SurfacePoint> points, const
 
 FitSurface make_live_fit_surface(std::span<const contact::SurfacePoint> points, const volume::Grid& distance) {
     FitSurfaceOptions options;
-    options.most_outline /= 2;
+    options.max_outline /= 2;
     return make_fit_surface(points, distance, options);
 }
 
@@ -201,7 +201,7 @@ std::vector<FitSurface> make_fit_faces(std::span<const contact::SurfacePoint> po
                                        const FitSurfaceOptions& options) {
     auto patches =
         geometry::patches_of(points, options.max_gap, [&](std::size_t i) { return points[i].label == options.paint; });
-    std::erase_if(patches, [](const auto& patch) { return patch.size() < least_points; });
+    std::erase_if(patches, [](const auto& patch) { return patch.size() < min_points; });
     std::ranges::stable_sort(patches, std::ranges::greater{}, [](const auto& patch) { return patch.size(); });
     std::vector<FitSurface> faces;
     if (patches.size() < 2) {

@@ -19,9 +19,9 @@ struct FitSurfaceOptions {
         contact::surface_label::fracture;  ///< label of other faces: neither paint nor outer contour
     double reach = 12e-3;  ///< m: extent of the field around painted points; no attraction beyond it
     double outline = 6e-3;  ///< m: unpainted points closer to the paint than this form the outer contour
-    std::size_t most_outline = 240;  ///< points of the outline, spread evenly
+    std::size_t max_outline = 240;  ///< points of the outline, spread evenly
     double max_gap = 1.5e-3;  ///< m: painted points farther apart belong to different faces
-    std::size_t most_samples = 8'000'000;  ///< of the field; it becomes coarser instead of larger
+    std::size_t max_samples = 8'000'000;  ///< of the field; it becomes coarser instead of larger
 };
 
 /// Positions are relative to `centre`, so that rotations are about the centroid of the paint.

@@ -24,7 +24,7 @@ constexpr int start_spins = 16;
 FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size_t> face, std::size_t most) {
     FitSurfaceOptions options;
     options.reach = 6e-3;
-    options.most_samples = 1'000'000;
+    options.max_samples = 1'000'000;
     FitSurface made = make_fit_face(fragment.points, face, *fragment.distance, options);
     const std::size_t stride = (made.position.size() + most - 1) / most;
     if (stride < 2) return made;
@@ -54,26 +54,26 @@ FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, con
     for (std::size_t n = 0; n < fragments.size(); ++n)
         for (const auto& face : split_faces(fragments[n].points)) {
             if (face.size() < 40) continue;
-            faces_.push_back({static_cast<int>(n), surface_of(fragments[n], face, settings.most_points)});
+            faces_.push_back({static_cast<int>(n), surface_of(fragments[n], face, settings.max_points)});
             paint_[n] += faces_.back().surface.area;
         }
-    if (faces_.size() > settings.most_faces)
+    if (faces_.size() > settings.max_faces)
         throw Error(
             fmt::format("the fragments have {} painted faces and at most {} can be matched: paint less, or "
                         "leave out fragments",
-                        faces_.size(), settings.most_faces));
+                        faces_.size(), settings.max_faces));
     if (settings.healthy.side)
         for (const FragmentSurface& fragment : fragments) pulls_.emplace_back(fragment.points, settings.healthy);
     for (const Face& face : faces_) {
-        most_face_points_ = std::max(most_face_points_, face.surface.position.size());
-        most_outline_ = std::max(most_outline_, face.surface.outline.size());
+        max_face_points_ = std::max(max_face_points_, face.surface.position.size());
+        max_outline_ = std::max(max_outline_, face.surface.outline.size());
     }
-    const std::size_t joined = std::max<std::size_t>(settings.most_joined, 1);
+    const std::size_t joined = std::max<std::size_t>(settings.max_joined, 1);
     for (std::size_t n = 0; n < joined && !faces_.empty(); ++n) energies_.push_back(make_energy());
     pairs_.reserve(faces_.size() * faces_.size());
     joined_.reserve(joined);
     stood_.reserve(fragments.size());
-    solved_.reserve(std::max<std::size_t>(settings.most_pairs, 1));
+    solved_.reserve(std::max<std::size_t>(settings.max_pairs, 1));
     free_.free.reserve(6);
 }
 
@@ -101,7 +101,7 @@ Pose FragmentMatcher::centres(const Pair& pair, const Pose& moving, std::span<co
 
 FitEnergy FragmentMatcher::make_energy() const {
     FitEnergy made(faces_.front().surface, faces_.front().surface);
-    made.reserve(most_face_points_, most_outline_);
+    made.reserve(max_face_points_, max_outline_);
     made.law.kerf = settings.fit.kerf;
     return made;
 }
@@ -124,7 +124,7 @@ FragmentMatcher::Solved FragmentMatcher::solve(FitEnergy& e, const Pair& pair,
         else if (c.score > best[1].score) best[1] = c;
     }
     Solved solved{pair, {}, 0.0, {}};
-    set_law(e, 0.0, settings.most_points);
+    set_law(e, 0.0, settings.max_points);
     for (Candidate& c : best) {
         if (!(c.score >= 0.0)) continue;
         c.pose = anneal(e, c.pose, {4.0 * fit.finest, fit.finest, 14, fit.power}, steps);
@@ -161,7 +161,7 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
                                         : a.fixed < b.fixed;
     });
     solved_.clear();
-    for (std::size_t n = 0; n < std::min({pairs_.size(), settings.most_pairs, solved_.capacity()}); ++n) {
+    for (std::size_t n = 0; n < std::min({pairs_.size(), settings.max_pairs, solved_.capacity()}); ++n) {
         const Pair& pair = pairs_[n];
         const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
         const Pose from = centres(pair, held, poses);
@@ -194,7 +194,7 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         const Pose at = world(s.pair, s.best.pose, poses);
         const Vec3& centre = faces_[s.pair.moving].surface.centre;
         return glm::length(at.apply(centre) - held.apply(centre)) > settings.near ||
-               glm::length(rotation_between(held.orientation, at.orientation)) > settings.most_turn;
+               glm::length(rotation_between(held.orientation, at.orientation)) > settings.max_turn;
     });
     std::ranges::sort(solved_, [&](const Solved& a, const Solved& b) { return worth(a) > worth(b); });
     FragmentMatch first = match_;

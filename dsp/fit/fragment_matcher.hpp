@@ -57,7 +57,7 @@ inline FitSettings settings_of_faces() noexcept {
     FitSettings settings;
     settings.widest = 3e-3;
     settings.outline = 0.0;
-    settings.most_penetration = 0.6e-3;
+    settings.max_penetration = 0.6e-3;
     // Bias from chips accumulates along a chain of fragments: half of the limit for a single pair.
     settings.polish = 0.05e-3;
     return settings;
@@ -66,13 +66,13 @@ inline FitSettings settings_of_faces() noexcept {
 struct MatcherSettings {
     FitSettings fit = settings_of_faces();  ///< widened for the coarsest of the fragments' scans
     double near = 15e-3;  ///< m: largest distance of the centroids of tried face pairs, and largest displacement
-    double most_turn = 0.7;  ///< rad, greatest rotation
-    double least_share = 0.5;  ///< of the best pair's score: minimum for other faces to take part
-    std::size_t most_pairs = 6;  ///< maximum number of face pairs per call, nearest first
-    std::size_t most_joined = 16;  ///< maximum number of face pairs fitted together
-    std::size_t most_points = 700;  ///< maximum number of points per face
+    double max_turn = 0.7;  ///< rad, greatest rotation
+    double min_share = 0.5;  ///< of the best pair's score: minimum for other faces to take part
+    std::size_t max_pairs = 6;  ///< maximum number of face pairs per call, nearest first
+    std::size_t max_joined = 16;  ///< maximum number of face pairs fitted together
+    std::size_t max_points = 700;  ///< maximum number of points per face
     HealthyPullSettings healthy;  ///< the healthy side, if it takes part in the fit
-    std::size_t most_faces = 400;  ///< maximum over all fragments; each face takes some megabytes
+    std::size_t max_faces = 400;  ///< maximum over all fragments; each face takes some megabytes
 };
 
 class FragmentMatcher {
@@ -80,7 +80,7 @@ public:
     MatcherSettings settings;
 
     /// Throws Error when a fragment's points and distances do not match, and when all together have more than
-    /// `most_faces`. A fragment without paint has no fit. Memory is proportional to the number of faces.
+    /// `max_faces`. A fragment without paint has no fit. Memory is proportional to the number of faces.
     explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
 
     std::size_t faces() const noexcept { return faces_.size(); }
@@ -137,7 +137,7 @@ private:
     Pose world(const Pair& pair, const Pose& centres, std::span<const Pose> poses) const noexcept;
     Pose centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept;
     Solved solve(FitEnergy& energy, const Pair& pair, std::span<const Pose> starts) const noexcept;
-    double least_overlap(int moving, int partner) const noexcept;
+    double min_overlap(int moving, int partner) const noexcept;
     void join(const Solved& best, const Pose& at, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void confirm(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
@@ -145,7 +145,7 @@ private:
 
     std::vector<Face> faces_;
     std::vector<double> paint_;  ///< m², painted area of each fragment
-    std::size_t most_face_points_ = 0, most_outline_ = 0;
+    std::size_t max_face_points_ = 0, max_outline_ = 0;
     std::vector<FitEnergy> energies_;  ///< the first for single pairs, all for pairs fitted together
     std::vector<HealthyPull> pulls_;  ///< of each fragment; empty without a healthy side
     std::vector<Pair> pairs_;

@@ -111,7 +111,7 @@ void FragmentMatcher::join(const Solved& best, const Pose& at, std::span<const P
             if (glm::length(there.position) > reach) continue;
             FitEnergy& e = energy(0, pair);
             set_law(e, 0.0, coarse_points);
-            if (e.quality(there, 1.5 * settings.fit.sigma).score > settings.least_share * best.best.score)
+            if (e.quality(there, 1.5 * settings.fit.sigma).score > settings.min_share * best.best.score)
                 joined_.push_back(pair);
         }
     match_.faces = static_cast<int>(joined_.size());
@@ -124,7 +124,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
     match_.partner = faces_[best.pair.fixed].fragment;
     // All faces that fit there take part.
     join(best, at, poses, stands);
-    for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.most_points);
+    for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.max_points);
     const auto at_scale = [&](double wider) {
         for (std::size_t n = 0; n < joined_.size(); ++n) set_robust(energies_[n], fit, wider);
     };
@@ -167,7 +167,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
     free_.free.clear();
     together.look(there);
     find_free(free_, together(there, contact::ContactParts::all).stiffness, faces_[best.pair.moving].surface.gyration,
-              fit.least_hold);
+              fit.min_hold);
     const FitSurface& leading = faces_[best.pair.moving].surface;
     FitPrecisionSum sum(at.apply(leading.centre), at.apply(leading.centre + leading.far));
     for (std::size_t k = 0; k < joined_.size(); ++k) {
@@ -181,15 +181,15 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
                             leading.far, !pulls_.empty());
     // The healthy side holds the far end too.
     FitSettings required = fit;
-    required.least_overlap = least_overlap(match_.moving, match_.partner);
+    required.min_overlap = min_overlap(match_.moving, match_.partner);
     match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, required,
                            pulls_.empty() ? match_.precision.far : 0.0);
 }
 
-double FragmentMatcher::least_overlap(int moving, int partner) const noexcept {
+double FragmentMatcher::min_overlap(int moving, int partner) const noexcept {
     const auto paint = [this](int n) { return paint_[static_cast<std::size_t>(n)]; };
-    return std::max(settings.fit.least_overlap,
-                    Acceptance::least_paint_share * std::min(paint(moving), paint(partner)));
+    return std::max(settings.fit.min_overlap,
+                    Acceptance::min_paint_share * std::min(paint(moving), paint(partner)));
 }
 
 FacePairFit FragmentMatcher::fit_faces(FitEnergy& energy, std::size_t moving, std::size_t fixed,

@@ -15,7 +15,7 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr double most_step = 0.3e-3;  // m, of any face in one step
+constexpr double max_step = 0.3e-3;  // m, of any face in one step
 constexpr int narrowing_steps = 20;
 
 /// The sum of the energies of all pairs, as one system over the bodies that may move.
@@ -98,7 +98,7 @@ public:
                     most = std::max(most, glm::length(v + glm::cross(w, place_of(face) - middle_)) +
                                               matcher_.face(face).gyration * glm::length(w));
                 }
-        const double scale = most > most_step ? most_step / most : 1.0;
+        const double scale = most > max_step ? max_step / most : 1.0;
         for (std::size_t n = 0; n < poses_.size(); ++n) {
             const int u = body_[n] < 0 ? -1 : unknown_[static_cast<std::size_t>(body_[n])];
             if (u < 0) continue;

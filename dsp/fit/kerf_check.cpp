@@ -24,11 +24,11 @@ constexpr double rim = 1.2e-3;  // m: nearer to the face the cortex is rounded
 constexpr double short_reach = 5e-3, middle_reach = 7e-3, long_reach = 9e-3;
 constexpr double half_width = 1.5e-3;  // m, of a strip
 constexpr double alike = 0.8;  // least cosine between the normals of a strip
-constexpr std::size_t most_strips = 48, least_in_strip = 12, most_paint = 400;
+constexpr std::size_t max_strips = 48, min_in_strip = 12, max_paint = 400;
 constexpr int independent = 8;  // strips around a bone that tell something of their own
 constexpr double widest = 6e-3;  // m: errors of the opening that are still seen
-constexpr double most_error = 0.5e-3;  // m, of the opening
-constexpr double most_spread = 1e-3;  // m: what a contour says that knows less must be sure
+constexpr double max_error = 0.5e-3;  // m, of the opening
+constexpr double max_spread = 1e-3;  // m: what a contour says that knows less must be sure
 // Of the standard deviation. Measured, not derived: with `tactus-bench shafts --count 20`, with and without chips, none of
 // 40 that had lost 0.8 mm passed; of 40 whole ones with chips, none was refused for a kerf.
 constexpr double share_of_spread = 0.5;
@@ -40,7 +40,7 @@ struct Spot {
 /// The cortex around a face but for its rim, in the fixed frame.
 std::vector<Spot> cortex_of(const KerfSide& side, const Pose& pose) {
     const FitSurface& face = *side.face;
-    const std::size_t stride = 1 + face.position.size() / most_paint;
+    const std::size_t stride = 1 + face.position.size() / max_paint;
     double radius = 0.0;
     for (const Vec3& p : face.position) radius = std::max(radius, glm::length(p));
     radius += long_reach + rim;
@@ -98,7 +98,7 @@ std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
                 for (std::size_t b = 0; b < terms; ++b) matrix[a * terms + b] += row[a] * row[b];
             }
         }
-        if (count < least_in_strip) return std::nullopt;
+        if (count < min_in_strip) return std::nullopt;
     }
     for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
     if (!geometry::solve_positive(matrix, solved)) return std::nullopt;
@@ -180,7 +180,7 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
     const auto opening_of = [&](double reach) {
         ContourOpening seen;
         std::vector<Step> steps;
-        const std::size_t stride = 1 + face.outline.size() / most_strips;
+        const std::size_t stride = 1 + face.outline.size() / max_strips;
         for (std::size_t n = 0; n < face.outline.size(); n += stride)
             if (const auto step = step_at(face.centre + face.outline[n], face.outline_normal[n], normal, face.centre,
                                           {&mine, &other}, reach))
@@ -199,7 +199,7 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
     if (told) return opening_of(long_reach);
     ContourOpening found = opening_of(short_reach);
     // Where short strips are too few, or their noise is a large opening, curvature is not what matters.
-    if (found.strips < independent || found.spread > most_spread) return opening_of(long_reach);
+    if (found.strips < independent || found.spread > max_spread) return opening_of(long_reach);
     // Where parabolas of two lengths disagree, the cortex is none. By the third power, the shorter is wrong by 0.6 of the
     // difference; over 77 breaks in place of jaws, fibulas and a tibia, all of it made the error 0.98 of what is stated (rms).
     const ContourOpening middle = opening_of(middle_reach);
@@ -219,15 +219,15 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
     made.kerf = std::max(0.0, left + missing * cosine);
     made.spread = contour.spread * cosine;
     if (told) {
-        const double limit = contour.spread < most_spread ? most_error : 2.0 * contour.spread;
+        const double limit = contour.spread < max_spread ? max_error : 2.0 * contour.spread;
         made.is_contradicted = std::abs(missing) > limit;
-        made.is_too_wide = left * (1.0 / cosine - 1.0) > most_error;
+        made.is_too_wide = left * (1.0 / cosine - 1.0) > max_error;
     } else if (contour.strips >= independent) {
         // Faces of which no bone is lost lie on each other however the contour beside them looks: ridges that end there
         // have steps as well, which `spread` knows of.
         const double doubt = share_of_spread * contour.spread;
-        made.is_contradicted = missing > std::max(most_error, doubt);
-        made.is_open = !made.is_contradicted && std::max(0.0, missing) + doubt > most_error;
+        made.is_contradicted = missing > std::max(max_error, doubt);
+        made.is_open = !made.is_contradicted && std::max(0.0, missing) + doubt > max_error;
     }
     return made;
 }
@@ -266,7 +266,7 @@ bool CommonOpening::excludes_kerf(const ContourOpening& pair) const noexcept {
     // What a pair that contradicts the others has lost, the others do not know.
     if (-pair.excess - missing > 2.0 * std::sqrt(own + prior)) return false;
     const double mean = (missing * own - pair.excess * prior) / (own + prior);
-    return mean + std::sqrt(own * prior / (own + prior)) < most_error;
+    return mean + std::sqrt(own * prior / (own + prior)) < max_error;
 }
 
 }  // namespace tactus::fit

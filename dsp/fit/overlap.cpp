@@ -8,7 +8,7 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr double most_deep_area = 10e-6;  // m²: as much of a surface may lie deep in another bone
+constexpr double max_deep_area = 10e-6;  // m²: as much of a surface may lie deep in another bone
 
 double voxel_of(const PlacedBone& bone) noexcept {
     const Vec3& spacing = bone.map->grid.spacing;
@@ -21,7 +21,7 @@ bool lies_in(const PlacedBone& bone, const PlacedBone& other, double depth) noex
     double area = 0.0;
     for (const contact::SurfacePoint& p : bone.points) {
         const volume::Sample here = other.map->sample(into.apply(p.position));
-        if (here.inside && here.value < -depth && (area += p.area) > most_deep_area) return true;
+        if (here.inside && here.value < -depth && (area += p.area) > max_deep_area) return true;
     }
     return false;
 }

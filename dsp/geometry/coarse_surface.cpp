@@ -17,7 +17,7 @@ constexpr double on_face = 2e-4, precision = 0x1p-23;
 constexpr std::array middle{0.47, 0.52, 0.44};
 
 // In cell sides: how far a vertex may move off the surface. Levels add up to twice this.
-constexpr double most_off = 0.12;
+constexpr double max_off = 0.12;
 
 Vec3 position(const SurfaceVertex& v) {
     return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]), static_cast<double>(v.position[2])};
@@ -86,7 +86,7 @@ void CoarseSurface::merge(const SurfacePatch& fine, const SurfaceGrid& grid, int
         cell.distance = distance;
         cell.vertex = static_cast<std::uint32_t>(v);
     }
-    const double may_move = most_off * factor * std::min({grid.voxel.x, grid.voxel.y, grid.voxel.z});
+    const double may_move = max_off * factor * std::min({grid.voxel.x, grid.voxel.y, grid.voxel.z});
     for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
         if (!(off_surface(fine.vertices[v], fine.vertices[cells_[now_[v]].vertex]) > may_move)) continue;
         now_[v] = static_cast<std::uint32_t>(cells_.size());

@@ -217,11 +217,11 @@ private:
         const Vec3 &p0 = net_.vertices[at(c[0])], &p1 = net_.vertices[at(c[1])], &p2 = net_.vertices[at(c[2])],
                    &p3 = net_.vertices[at(c[3])];
         const double first = std::abs(solid_.value(0.5 * (p0 + p2))), second = std::abs(solid_.value(0.5 * (p1 + p3)));
-        const auto least_area = [](const Vec3& a, const Vec3& b, const Vec3& d, const Vec3& e) {
+        const auto min_area = [](const Vec3& a, const Vec3& b, const Vec3& d, const Vec3& e) {
             return std::min(glm::length(glm::cross(b - a, d - a)), glm::length(glm::cross(d - a, e - a)));
         };
         if (std::abs(first - second) > 1e-3 * grid_.spacing.x) divide(q, c, first < second);
-        else divide(q, c, least_area(p0, p1, p2, p3) >= least_area(p1, p2, p3, p0));
+        else divide(q, c, min_area(p0, p1, p2, p3) >= min_area(p1, p2, p3, p0));
     }
 
     bool is_in(std::size_t s) const { return grid_.values[s] < 0.0f; }

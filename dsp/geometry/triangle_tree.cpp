@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t leaf_triangles = 4;
 // Halving 2^31 triangles down to leaves of four needs 30 levels.
-constexpr std::size_t most_levels = 64;
+constexpr std::size_t max_levels = 64;
 
 double distance2(const Vec3& p, const Vec3& low, const Vec3& high) {
     const Vec3 d = p - glm::clamp(p, low, high);
@@ -164,7 +164,7 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within, Budget& b
     if (nodes_.empty()) return {};
     double least2 = within * within;
     std::size_t best = size();
-    std::uint32_t stack[most_levels];
+    std::uint32_t stack[max_levels];
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
@@ -192,7 +192,7 @@ std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near>
                                    Budget& budget) const noexcept {
     std::size_t count = 0, depth = 0;
     if (nodes_.empty()) return 0;
-    std::uint32_t stack[most_levels];
+    std::uint32_t stack[max_levels];
     stack[depth++] = 0;
     while (depth > 0 && count < found.size()) {
         const std::uint32_t at = stack[--depth];
@@ -214,7 +214,7 @@ double TriangleTree::sweep(const Vec3& from, const Vec3& translation, double rad
     double first = 1.0;
     const double length = glm::length(translation);
     if (nodes_.empty()) return first;
-    std::uint32_t stack[most_levels];
+    std::uint32_t stack[max_levels];
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {

@@ -35,7 +35,7 @@ Vec3 between(const std::array<Vec3, 4>& p, double t) {
 
 Path::Path(std::span<const Vec3> points, bool is_smooth, bool is_closed) {
     if (points.size() < 2) throw Error("a path needs two points or more");
-    if (points.size() > most_points) throw Error(fmt::format("a path has at most {} points", most_points));
+    if (points.size() > max_points) throw Error(fmt::format("a path has at most {} points", max_points));
     const std::size_t spans = is_closed ? points.size() : points.size() - 1;
     for (std::size_t i = 0; i < spans; ++i)
         if (!(glm::distance(points[i], points[(i + 1) % points.size()]) > 1e-9))

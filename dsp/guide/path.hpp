@@ -12,7 +12,7 @@ namespace tactus::guide {
 
 class Path {
 public:
-    static constexpr std::size_t most_points = 200;
+    static constexpr std::size_t max_points = 200;
     static constexpr int steps_per_span = 8;  ///< straight pieces between two points of a smooth path
 
     Path() = default;

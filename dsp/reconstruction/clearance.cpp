@@ -21,7 +21,7 @@ namespace {
 
 /// Least value of a convex function of a point that goes from a to b: golden section.
 template <class Function>
-double least_along(const Vec3& a, const Vec3& b, const Function& f) {
+double min_along(const Vec3& a, const Vec3& b, const Function& f) {
     constexpr double golden = 0.6180339887498949;
     double low = 0.0, high = 1.0, x = 1.0 - golden, y = golden, fx = f(glm::mix(a, b, x)), fy = f(glm::mix(a, b, y));
     for (int round = 0; round < 30; ++round) {
@@ -136,7 +136,7 @@ double distance(const Capsule& a, const Capsule& b) noexcept {
 
 double distance(const Capsule& a, const Block& b) noexcept {
     const Mat3 back = glm::transpose(b.axes);
-    return least_along(back * (a.a - b.centre), back * (a.b - b.centre),
+    return min_along(back * (a.a - b.centre), back * (a.b - b.centre),
                        [&](const Vec3& p) { return glm::length(glm::max(glm::abs(p) - b.half, Vec3(0.0))); }) -
            a.radius;
 }
@@ -159,7 +159,7 @@ double distance(const Block& a, const Block& b) noexcept {
 }
 
 double distance(const Capsule& a, const Disc& b) noexcept {
-    return least_along(a.a, a.b,
+    return min_along(a.a, a.b,
                        [&](const Vec3& p) {
                            const double height = glm::dot(p - b.centre, b.normal);
                            const double out = glm::length(p - b.centre - height * b.normal) - b.radius;

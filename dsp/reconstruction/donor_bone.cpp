@@ -24,7 +24,7 @@ DonorBone::DonorBone(const FibulaInputs& inputs, geometry::TriangleSurface along
     if (!is_finite(point_)) throw Error("the line's point is no point");
     // x = y × z must be medial.
     const Vec3 y = leg_ == Leg::left ? Vec3(0.0, -1.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-    if (glm::length(glm::cross(y, axis_)) < least_y)
+    if (glm::length(glm::cross(y, axis_)) < min_y)
         throw Error("the line runs from front to back: that does not tell the medial side of the donor");
     frame_ = frame_of(axis_, y);
     if (!along_line.vertices.empty()) take(std::move(along_line));

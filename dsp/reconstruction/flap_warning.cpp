@@ -139,8 +139,8 @@ private:
                             100.0 * r.strain),
                 name, site, r.strain);
         // A vessel that is slack by the length of a half turn at that radius can be laid in a wider bend.
-        const double least_bend = limits.kink * vessel.radius;
-        if (r.bend_radius < least_bend && r.slack < std::numbers::pi * least_bend)
+        const double min_bend = limits.kink * vessel.radius;
+        if (r.bend_radius < min_bend && r.slack < std::numbers::pi * min_bend)
             add(FlapTrouble::kinked,
                 fmt::format("{} bends to a radius of {:.1f} mm on the way to {}, less than {:.1f} times its own", name,
                             r.bend_radius / mm, site, limits.kink),

@@ -17,7 +17,7 @@ namespace tactus::reconstruction {
 namespace {
 
 constexpr double spacing = 0.5e-3;
-constexpr std::size_t most_points = 1001, most_segments = 5;
+constexpr std::size_t max_points = 1001, max_segments = 5;
 
 /// Sums over the first points, from which the squared distances of any run of points from its chord follow.
 struct Moments {
@@ -46,7 +46,7 @@ std::vector<Vec3> candidates(std::span<const Vec3> curve) {
         if (!is_finite(p)) throw Error("a point of the jaw's curve is no point");
     const double count = std::ceil(rope::length_of(curve) / spacing) + 1.0;
     std::vector<Vec3> points =
-        rope::resampled(curve, static_cast<std::size_t>(std::clamp(count, 3.0, static_cast<double>(most_points))));
+        rope::resampled(curve, static_cast<std::size_t>(std::clamp(count, 3.0, static_cast<double>(max_points))));
     return points;
 }
 
@@ -81,9 +81,9 @@ CurveSplit split_at(std::span<const Vec3> curve, std::span<const double> places)
     return measured(points, ends);
 }
 
-CurveSplit split_curve(std::span<const Vec3> curve, std::size_t segments, double least_segment) {
-    if (segments < 1 || segments > most_segments)
-        throw Error(fmt::format("{} segments: a plan has one to {}", segments, most_segments));
+CurveSplit split_curve(std::span<const Vec3> curve, std::size_t segments, double min_segment) {
+    if (segments < 1 || segments > max_segments)
+        throw Error(fmt::format("{} segments: a plan has one to {}", segments, max_segments));
     std::vector<Vec3> points = candidates(curve);
     const Vec3 shift = points.front();  // near the origin the sums lose fewer digits
     for (Vec3& p : points) p -= shift;
@@ -101,7 +101,7 @@ CurveSplit split_curve(std::span<const Vec3> curve, std::size_t segments, double
                 if (least[i] == none) continue;
                 const Vec3 chord = points[j] - points[i];
                 const double length = glm::length(chord);
-                if (!(length >= least_segment && length > 0.0)) continue;
+                if (!(length >= min_segment && length > 0.0)) continue;
                 const double cost = least[i] + moments.off_line(i, j, points[i], chord / length);
                 if (cost < next[j]) next[j] = cost, from[segment][j] = i;
             }
@@ -109,7 +109,7 @@ CurveSplit split_curve(std::span<const Vec3> curve, std::size_t segments, double
     }
     if (least.back() == none)
         throw Error(fmt::format("the jaw's curve of {:.1f} mm has no room for {} segments of at least {:.1f} mm",
-                                rope::length_of(points) * 1e3, segments, least_segment * 1e3));
+                                rope::length_of(points) * 1e3, segments, min_segment * 1e3));
     std::vector<std::size_t> ends{count - 1};
     for (std::size_t segment = segments; segment-- > 0;) ends.push_back(from[segment][ends.back()]);
     std::ranges::reverse(ends);

@@ -18,10 +18,10 @@ struct CurveSplit {
 };
 
 /// Returns the split with the smallest rms among those with joints on the curve and no segment shorter than
-/// `least_segment`, to about 0.25 mm. Uses dynamic programming over candidates along the curve (as Perez and Vidal
+/// `min_segment`, to about 0.25 mm. Uses dynamic programming over candidates along the curve (as Perez and Vidal
 /// 1994), which needs no start and has no local minima. `curve`: at least two points, joined by straight lines. Throws
 /// Error if there is no such split.
-CurveSplit split_curve(std::span<const Vec3> curve, std::size_t segments, double least_segment);
+CurveSplit split_curve(std::span<const Vec3> curve, std::size_t segments, double min_segment);
 
 /// The same measures for given joints: positions along the curve, m, ascending, without its ends.
 CurveSplit split_at(std::span<const Vec3> curve, std::span<const double> places);

@@ -17,18 +17,18 @@ namespace tactus::reconstruction {
 
 namespace {
 
-constexpr double least_segment = 1.0 * mm, greatest_tilt = 75.0 * degree;
-constexpr std::size_t most_planes = 6;
+constexpr double min_segment = 1.0 * mm, greatest_tilt = 75.0 * degree;
+constexpr std::size_t max_planes = 6;
 
 std::string nth(std::size_t plane) { return fmt::format("plane {}", plane + 1); }
 
 Vec3 y_of(const JawPlane& given, const Vec3& normal, const Vec3& axis, std::size_t n) {
     const Vec3 superior(0.0, 0.0, 1.0);
     const Vec3 level = superior - glm::dot(superior, normal) * normal;
-    if (!given.y && glm::length(level) < least_y)
+    if (!given.y && glm::length(level) < min_y)
         throw Error(fmt::format("{} is nearly horizontal: give it a y, which tells how its segment is turned", nth(n)));
     const Vec3 y = direction(given.y ? *given.y : level, nth(n) + ": its y");
-    if (glm::length(glm::cross(y, axis)) < least_y)
+    if (glm::length(glm::cross(y, axis)) < min_y)
         throw Error(fmt::format("{}: {} is parallel to the segment after it: give it {}", nth(n),
                                 given.y ? "its y" : "superior", given.y ? "another y" : "a y"));
     return y;
@@ -38,13 +38,13 @@ Vec3 y_of(const JawPlane& given, const Vec3& normal, const Vec3& axis, std::size
 
 JawSide jaw_side(const FibulaInputs& inputs) {
     const std::size_t count = inputs.planes.size();
-    if (count < 2 || count > most_planes)
-        throw Error(fmt::format("{} planes: a plan needs 2 to {}, for one to {} segments", count, most_planes,
-                                most_planes - 1));
+    if (count < 2 || count > max_planes)
+        throw Error(fmt::format("{} planes: a plan needs 2 to {}, for one to {} segments", count, max_planes,
+                                max_planes - 1));
     JawSide jaw;
     for (std::size_t n = 0; n + 1 < count; ++n) {
         const Vec3 along = inputs.planes[n + 1].origin - inputs.planes[n].origin;
-        if (!is_finite(along) || !(glm::length(along) >= least_segment))
+        if (!is_finite(along) || !(glm::length(along) >= min_segment))
             throw Error(fmt::format("{} and {}: their origins are less than 1 mm apart", nth(n), nth(n + 1)));
         jaw.axis.push_back(glm::normalize(along));
     }

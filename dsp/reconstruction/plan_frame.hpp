@@ -14,7 +14,7 @@
 namespace tactus::reconstruction {
 
 /// Sine of the angle below which a direction does not define a rotation about an axis.
-inline constexpr double least_y = 0.05;
+inline constexpr double min_y = 0.05;
 
 /// rad, 0 to pi.
 inline double angle_between(const Vec3& a, const Vec3& b) {

@@ -42,14 +42,14 @@ bool is_free(const Vec3& a, const Vec3& b, double radius, const rope::Obstacle* 
 
 /// Whether a way keeps off the bone, apart from its ends. Between two points a way round bone cuts off an arc.
 bool keeps_off(const std::vector<Vec3>& path, double radius, const rope::Obstacle* bone) {
-    constexpr double tolerance = 0.3 * mm, least_curve = 10.0 * mm;
+    constexpr double tolerance = 0.3 * mm, min_curve = 10.0 * mm;
     Vec3 normal(0.0);
     for (std::size_t n = 0; n + 1 < path.size(); ++n) {
         const Vec3 middle = 0.5 * (path[n] + path[n + 1]);
         if (glm::length(middle - path.front()) < 2.0 * radius || glm::length(middle - path.back()) < 2.0 * radius)
             continue;
         const double step = glm::length(path[n + 1] - path[n]);
-        if (bone->distance(middle, normal) < radius - tolerance - step * step / (8.0 * least_curve)) return false;
+        if (bone->distance(middle, normal) < radius - tolerance - step * step / (8.0 * min_curve)) return false;
     }
     return true;
 }
@@ -120,7 +120,7 @@ double bend_of(const Pedicle& pedicle, const std::vector<Vec3>& path) {
     const std::vector<Vec3> fine = rope::resampled(line, count);
     double least = infinity;
     for (std::size_t n = parts; n + parts < fine.size(); ++n)
-        least = std::min(least, rope::least_bend_radius(std::array{fine[n - parts], fine[n], fine[n + parts]}));
+        least = std::min(least, rope::min_bend_radius(std::array{fine[n - parts], fine[n], fine[n + parts]}));
     return least;
 }
 
@@ -161,14 +161,14 @@ SiteReach reach_of(const FlapVessel& vessel, const RecipientSite& site, const Pe
 
 /// By how much the vein's side of the artery turns on the way to the site, against the side carried along the path.
 std::optional<double> twist_of(const SiteReach& artery, const Vec3& vein_at_exit, const Vec3& vein_at_site) {
-    constexpr double least_apart = 0.5 * mm;
+    constexpr double min_apart = 0.5 * mm;
     const std::vector<Vec3>& p = artery.points;
     const auto across = [](const Vec3& v, const Vec3& along) { return v - glm::dot(v, along) * along; };
     const Vec3 first = p[1] - p[0], last = p.back() - p[p.size() - 2];
     if (!(glm::length(first) > 0.0 && glm::length(last) > 0.0)) return {};
     const Vec3 from = across(vein_at_exit - p.front(), glm::normalize(first)), axis = glm::normalize(last),
                to = across(vein_at_site - p.back(), axis);
-    if (glm::length(from) < least_apart || glm::length(to) < least_apart) return {};
+    if (glm::length(from) < min_apart || glm::length(to) < min_apart) return {};
     const Vec3 carried = rope::transported(p, from);
     return std::atan2(glm::dot(glm::cross(carried, to), axis), glm::dot(carried, to));
 }

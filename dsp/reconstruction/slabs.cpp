@@ -12,7 +12,7 @@ namespace tactus::reconstruction {
 namespace {
 
 constexpr double thickness = 1e-3;  // m
-constexpr std::size_t most_slabs = 4096;
+constexpr std::size_t max_slabs = 4096;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Slabs::Slabs(const geometry::TriangleSurface& surface, const Vec3& point, const 
         radius_ = std::max(radius_, glm::length(v - point_ - s * axis_));
     }
     if (!(high >= low_)) low_ = high = 0.0;
-    begin_.assign(std::min(static_cast<std::size_t>((high - low_) / thickness) + 2, most_slabs) + 1, 0);
+    begin_.assign(std::min(static_cast<std::size_t>((high - low_) / thickness) + 2, max_slabs) + 1, 0);
     std::vector<std::size_t> slab;
     slab.reserve(surface.triangles.size());
     for (const auto& t : surface.triangles) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double beside = 0.3;  // sine of 17°
 constexpr double segment_length = 2.5e-3;  // m, of free parts
-constexpr double most_beyond = 1.1;  // of the length in the leg: the third figure of a site's report
+constexpr double max_beyond = 1.1;  // of the length in the leg: the third figure of a site's report
 
 Vec3 tangent(std::span<const Vec3> line, std::size_t n) {
     const Vec3 along = line[std::min(n + 1, line.size() - 1)] - line[n > 0 ? n - 1 : 0];
@@ -68,7 +68,7 @@ std::vector<Attachment> attachments_along(std::span<const Vec3> course, std::spa
 Reach reach_of(double strain) noexcept {
     if (strain <= 0.0) return Reach::slack;
     if (strain <= 1.0 / free_over_in_situ - 1.0) return Reach::in_situ;
-    if (strain <= most_beyond / free_over_in_situ - 1.0) return Reach::stretched;
+    if (strain <= max_beyond / free_over_in_situ - 1.0) return Reach::stretched;
     return Reach::no;
 }
 
@@ -105,7 +105,7 @@ AttachedVessel::Layout AttachedVessel::layout_of(std::span<const Vec3> course, s
     // The points that are left after both ends of each body, for the pedicle and the spans.
     const std::size_t spans = attachments.size() - 1, ends = 2 * attachments.size();
     // The pedicle has one more: the end that is sewn.
-    std::size_t left = settings.most_points > ends ? settings.most_points - ends - 1 : 0;
+    std::size_t left = settings.max_points > ends ? settings.max_points - ends - 1 : 0;
     const auto free_points = [&](double of, std::size_t most) {
         const auto segments = static_cast<std::size_t>(std::ceil(of / segment_length));
         return std::min(most, segments > 0 ? segments - 1 : 0);
@@ -239,13 +239,13 @@ double AttachedVessel::strain(const Vec3* free_site) const noexcept {
 double AttachedVessel::bend_ratio() const noexcept {
     const double radius = std::max(settings_.material.radius, 1e-6);
     return root_ < 2 ? std::numeric_limits<double>::infinity()
-                     : least_bend_radius(rope_.points().first(root_ + 1)) / radius;
+                     : min_bend_radius(rope_.points().first(root_ + 1)) / radius;
 }
 
 void AttachedVessel::show(RopeShape& shape) const noexcept {
     const std::span<const Vec3> all = rope_.points();
-    shape.count = static_cast<std::uint32_t>(std::min(all.size(), RopeShape::most_points));
-    const double limit = most_beyond / free_over_in_situ - 1.0;
+    shape.count = static_cast<std::uint32_t>(std::min(all.size(), RopeShape::max_points));
+    const double limit = max_beyond / free_over_in_situ - 1.0;
     for (std::size_t n = 0; n < shape.count; ++n) {
         for (int a = 0; a < 3; ++a) shape.points[n][static_cast<std::size_t>(a)] = static_cast<float>(all[n][a]);
         // Along a body it is at its length of the leg, which pulls on nothing.

@@ -33,9 +33,9 @@ Reach reach_of(double strain) noexcept;
 struct AttachedVesselSettings {
     RopeMaterial material = artery();
     double pedicle = 0.0;  ///< m of the length in the leg to keep before the first body; 0: all
-    std::size_t most_points = RopeShape::most_points;
+    std::size_t max_points = RopeShape::max_points;
     /// A tick in which a slack vessel slides over an edge may not converge; the next tick continues.
-    RopeSettings solver{.most_iterations = 2, .tolerance = 2e-5};
+    RopeSettings solver{.max_iterations = 2, .tolerance = 2e-5};
     double sewing_speed = 0.3;  ///< m/s of the end on its path to its site
 };
 

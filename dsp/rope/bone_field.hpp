@@ -33,7 +33,7 @@ public:
         const Vec3 at = pose_.inverse().apply(place);
         const double least = std::max(near, 0.0) * std::numbers::sqrt3 * field_.steepness;
         for (const double way : {2e-3, 0.5e-3})
-            if (field_.least_within(at, way) > least) return way;
+            if (field_.min_within(at, way) > least) return way;
         return 0.0;
     }
 

@@ -41,7 +41,7 @@ std::vector<Vec3> resampled(std::span<const Vec3> line, std::size_t count) {
     return out;
 }
 
-double least_bend_radius(std::span<const Vec3> line) noexcept {
+double min_bend_radius(std::span<const Vec3> line) noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t n = 1; n + 1 < line.size(); ++n) {
         const Vec3 a = line[n] - line[n - 1], b = line[n + 1] - line[n];
@@ -103,7 +103,7 @@ ShortestPath shortest_path(std::span<const Vec3> start, const Obstacle* obstacle
     band.drag = 1e-3;
     RopeSettings settings;
     settings.substeps = 1;
-    settings.most_iterations = 20;
+    settings.max_iterations = 20;
     Rope rope(path.points, std::vector<double>(path.points.size() - 1, rest), band, settings);
     rope.hold(0, path.points.front());
     rope.hold(path.points.size() - 1, path.points.back());

@@ -17,7 +17,7 @@ std::vector<Vec3> resampled(std::span<const Vec3> line, std::size_t count);
 double length_of(std::span<const Vec3> line) noexcept;
 
 /// Returns the smallest radius of curvature at an inner point, m; infinity for a straight line.
-double least_bend_radius(std::span<const Vec3> line) noexcept;
+double min_bend_radius(std::span<const Vec3> line) noexcept;
 
 /// Transports a direction across the line's first segment to its last one without rotation about the line (Bishop
 /// 1975): by the smallest rotation from segment to segment. A reversal of the line does not change the direction.

@@ -48,7 +48,7 @@ Rope::Rope(std::vector<Vec3> points, std::vector<double> rest, const RopeMateria
             throw Error(fmt::format("a rope's point {} or the rest length before it is no length", n));
     const bool is_material = material.stiffness > 0.0 && material.bending >= 0.0 && material.drag > 0.0 &&
                              material.radius >= 0.0 && material.friction >= 0.0 && std::isfinite(material.weight);
-    const bool is_setting = settings.substeps > 0 && settings.most_iterations > 0 && settings.tolerance > 0.0 &&
+    const bool is_setting = settings.substeps > 0 && settings.max_iterations > 0 && settings.tolerance > 0.0 &&
                             settings.contact_stiffness > 0.0 && settings.stick_stiffness > 0.0;
     if (!is_material || !is_setting) throw Error("a rope's stiffness and drag must be positive, nothing negative");
     before_ = trial_ = seen_ = normal_before_ = move_ = rest_of_gradient_ = target_ = x_;
@@ -234,10 +234,10 @@ RopeStep Rope::step(double h, const Obstacle* bone) noexcept {
     report.is_solved = true;
     const auto allowed = [&](std::size_t p) { return 0.5 * std::min(2.0 * share_[p], rest_[p ? p - 1 : 0]); };
     // As many substeps as the fastest held point needs.
-    double most_parts = 1.0;
+    double max_parts = 1.0;
     for (std::size_t p = 0; p < x_.size(); ++p)
-        if (held_[p]) most_parts = std::max(most_parts, glm::length(target_[p] - x_[p]) / settings_.way);
-    const int substeps = static_cast<int>(std::ceil(std::min(most_parts, static_cast<double>(settings_.substeps))));
+        if (held_[p]) max_parts = std::max(max_parts, glm::length(target_[p] - x_[p]) / settings_.way);
+    const int substeps = static_cast<int>(std::ceil(std::min(max_parts, static_cast<double>(settings_.substeps))));
     if (!bone) {
         std::ranges::fill(depth_, 0.0);
         std::ranges::fill(normal_, Vec3(0.0));
@@ -255,8 +255,8 @@ RopeStep Rope::step(double h, const Obstacle* bone) noexcept {
         }
         begin_friction();
         look_at(bone, n == 0);
-        const int left = settings_.most_iterations * settings_.substeps - report.iterations;
-        const int most = left - settings_.most_iterations / 2 * (substeps - 1 - n);
+        const int left = settings_.max_iterations * settings_.substeps - report.iterations;
+        const int most = left - settings_.max_iterations / 2 * (substeps - 1 - n);
         report.is_solved = substep(h / substeps, bone, most, report) && report.is_solved;
         end_friction();
     }

@@ -32,7 +32,7 @@ inline constexpr double free_over_in_situ = 0.89;
 struct RopeSettings {
     int substeps = 4;  ///< maximum per tick
     double way = 0.1e-3;  ///< m per substep of the fastest held point: slower motion needs fewer substeps
-    int most_iterations = 8;  ///< Newton steps per permitted substep; later substeps reserve half of theirs
+    int max_iterations = 8;  ///< Newton steps per permitted substep; later substeps reserve half of theirs
     double tolerance = 1e-5;  ///< N: a substep ends when the largest unbalanced force at a point is below this
     double contact_stiffness = 4e3;  ///< N/m per point in contact; implicit, so it may be high
     double stick_stiffness = 4e3;  ///< N/m per sticking point
@@ -100,12 +100,12 @@ private:
     double gradient(double drag) noexcept;
     void assemble_base(double drag) noexcept;
     void assemble(double damping, bool with_curves) noexcept;
-    bool go(bool has_move, int most_halvings, double drag, const Obstacle* bone, double& now) noexcept;
+    bool go(bool has_move, int max_halvings, double drag, const Obstacle* bone, double& now) noexcept;
     void learn_curves() noexcept;
-    int find_move(double damping, int most_rounds) noexcept;
+    int find_move(double damping, int max_rounds) noexcept;
     void measure() noexcept;
     void look_at(const Obstacle* bone, bool is_anew) noexcept;
-    bool substep(double h, const Obstacle* bone, int most_iterations, RopeStep& report) noexcept;
+    bool substep(double h, const Obstacle* bone, int max_iterations, RopeStep& report) noexcept;
     void begin_friction() noexcept;
     void end_friction() noexcept;
     double clamped_weight(double l, bool is_clamped) const noexcept;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int many_rounds = 4;  // of the active set, per iteration
 constexpr int few_halvings = 4, many_halvings = 10;  // of a step
-constexpr int most_failures = 2;  // searches for a lower sum that fail in contact, one after the other
-constexpr double least_damping = 1e-2;  // N/m
+constexpr int max_failures = 2;  // searches for a lower sum that fail in contact, one after the other
+constexpr double min_damping = 1e-2;  // N/m
 constexpr double damping_in_contact = 1.0 / 400.0;  // of the stiffness of contact, at first
 
 }  // namespace
@@ -130,7 +130,7 @@ void Rope::assemble(double damping, bool with_curves) noexcept {
 
 /// The step to the minimum of the model. Its active set is what resists and touches at that minimum. Gives the rounds
 /// that it took; 0: there is no such step.
-int Rope::find_move(double damping, int most_rounds) noexcept {
+int Rope::find_move(double damping, int max_rounds) noexcept {
     for (std::size_t n = 0; n < rest_.size(); ++n) resists_[n] = length_[n] > rest_[n];
     for (std::size_t n = 0; n < x_.size(); ++n) touching_[n] = depth_[n] > 0.0;
     for (int round = 1;; ++round) {
@@ -153,7 +153,7 @@ int Rope::find_move(double damping, int most_rounds) noexcept {
             is_same = is_same && will == (touching_[n] != 0);
             touching_[n] = will;
         }
-        if (is_same || round == most_rounds) return round;
+        if (is_same || round == max_rounds) return round;
     }
 }
 
@@ -174,7 +174,7 @@ void Rope::learn_curves() noexcept {
 }
 
 /// Goes along the move, or a part of it, when the sum gets less.
-bool Rope::go(bool has_move, int most_halvings, double drag, const Obstacle* bone, double& now) noexcept {
+bool Rope::go(bool has_move, int max_halvings, double drag, const Obstacle* bone, double& now) noexcept {
     if (!has_move) return false;
     // A point moves by at most two segments.
     double scale = 1.0;
@@ -182,7 +182,7 @@ bool Rope::go(bool has_move, int most_halvings, double drag, const Obstacle* bon
         scale = std::min(scale, 2.0 * share_[n] / std::max(glm::length(move_[n]), 1e-12));
     trial_ = x_;
     normal_before_ = normal_;
-    for (int halving = 0; halving < most_halvings; ++halving, scale *= 0.5) {
+    for (int halving = 0; halving < max_halvings; ++halving, scale *= 0.5) {
         for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = trial_[n] + scale * move_[n];
         look_at(bone, false);
         const double then = potential(drag);
@@ -199,14 +199,14 @@ bool Rope::go(bool has_move, int most_halvings, double drag, const Obstacle* bon
 
 /// At an edge of bone, where the sum has a kink, the smallest sum is no point without force: where no step makes it less
 /// the substep ends.
-bool Rope::substep(double h, const Obstacle* bone, int most_iterations, RopeStep& report) noexcept {
+bool Rope::substep(double h, const Obstacle* bone, int max_iterations, RopeStep& report) noexcept {
     const double drag = material_.drag / h;
     assemble_base(drag);
     double now = potential(drag), damping = 0.0;
     int failures = 0;
     for (int iteration = 0;; ++iteration) {
         const double residual = gradient(drag);
-        if (residual <= settings_.tolerance || iteration >= most_iterations || failures == most_failures) {
+        if (residual <= settings_.tolerance || iteration >= max_iterations || failures == max_failures) {
             if (!(residual <= report.residual)) report.residual = residual;
             return residual <= settings_.tolerance;
         }
@@ -218,12 +218,12 @@ bool Rope::substep(double h, const Obstacle* bone, int most_iterations, RopeStep
         if (is_less) {
             learn_curves();
             failures = 0;
-            damping = damping > 10.0 * least_damping ? 0.1 * damping : 0.0;
+            damping = damping > 10.0 * min_damping ? 0.1 * damping : 0.0;
         } else {
             const bool touches = std::ranges::any_of(depth_, [](double depth) { return depth > 0.0; });
             failures += touches;
             damping =
-                std::max(10.0 * damping, touches ? damping_in_contact * settings_.contact_stiffness : least_damping);
+                std::max(10.0 * damping, touches ? damping_in_contact * settings_.contact_stiffness : min_damping);
         }
     }
 }

@@ -75,11 +75,11 @@ private:
     static double way_in(const Part& part, const Vec3& local, double near, double most) noexcept {
         const double least = std::max(near, 0.0) * std::numbers::sqrt3 * part.map->steepness;
         for (const double way : {8e-3, 4e-3, 2e-3, 1e-3, 0.5e-3})
-            if (way <= most && part.map->least_within(local, way) > least) return way;
+            if (way <= most && part.map->min_within(local, way) > least) return way;
         return 0.0;
     }
 
-    std::array<Part, coupling::Scene::most_objects> parts_;
+    std::array<Part, coupling::Scene::max_objects> parts_;
     std::size_t count_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace tactus::saw {
 
 namespace {
 
-constexpr int most_moves = 12;
+constexpr int max_moves = 12;
 constexpr std::size_t probes = 29;
 constexpr double edge = 0.4e-3;  // m
 
@@ -113,7 +113,7 @@ double Burr::follow(const volume::BoneSnapshot& bone, bool running, double moved
         at_ = target_;
         return 0.0;
     }
-    for (int move = 0; move < most_moves; ++move) {
+    for (int move = 0; move < max_moves; ++move) {
         const Vec3 lag = target_ - at_;
         const double distance = glm::length(lag);
         if (distance < 1e-9) return 0.0;

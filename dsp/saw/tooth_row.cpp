@@ -19,7 +19,7 @@ constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little
 constexpr double passing = 0.02;  // s, time constant of the lag of a tooth in bone that it has not cut
 constexpr double settling = 0.02;  // s in which a tooth that came to bear takes its share of the thrust
 constexpr double kept_every = 0.006;  // s; seven rows outlast two ticks of carving at 60 Hz
-constexpr int most_plunges = 32, most_slides = 12, most_climbs = 12;
+constexpr int max_plunges = 32, max_row_slides = 12, max_climbs = 12;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ ToothRow::ToothRow(const SawShape& shape, double stiffness)
     : shape_(shape), sharing_(ToothSharing::of(shape.stroke, shape.pitch)), radius_(0.5 * shape.kerf) {
     const double length = shape.length + shape.stroke;
     const int spans = std::clamp(static_cast<int>(std::ceil(length / shape.pitch - 1e-9)), 1,
-                                 static_cast<int>(carve::CutFront::most_nodes) - 1);
+                                 static_cast<int>(carve::CutFront::max_nodes) - 1);
     pitch_ = length / spans;
     first_ = -0.5 * length;
     teeth_.resize(static_cast<std::size_t>(spans) + 1);
@@ -283,7 +283,7 @@ double ToothRow::descend(const Walk& walk, std::size_t n, double way) noexcept {
     double gone = 0.0;
     // In contact the interpolated distance ripples: hysteresis between touching and free.
     const double slack = (tooth.touched ? 0.15 : 0.02) * walk.voxel;
-    for (int move = 0; move < most_plunges && way - gone > 1e-12; ++move) {
+    for (int move = 0; move < max_plunges && way - gone > 1e-12; ++move) {
         const carve::RoundFront::Contact contact = walk.front.look(walk.bone, tooth.at, y, z, axes_[0] * pitch_, slack);
         if (contact.density > 0.0) {
             tooth.density[1] = contact.density;
@@ -320,7 +320,7 @@ void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
     const Vec3 direction = axes_[axis] * sign, across = axis == 0 ? z : y;
     // As deep as the floor's ripple and a late version of the bone need: less would lift a tooth with every slide.
     const double level = -walk.front.ahead - 0.15 * walk.voxel;
-    for (int move = 0; move < most_slides && side - held > 1e-12; ++move) {
+    for (int move = 0; move < max_row_slides && side - held > 1e-12; ++move) {
         const carve::RoundFront::Contact contact =
             walk.front.look(walk.bone, tooth.at, direction, across, Vec3(0.0), 0.1 * walk.voxel);
         if (contact.density > 0.0) {
@@ -349,7 +349,7 @@ void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
             climbed += rise;
             const double left = side - step, up = deep + climbed;
             const bool shorter = up * up + weight * left * left < deep * deep + weight * side * side;
-            if (climb == most_climbs || !shorter) return;
+            if (climb == max_climbs || !shorter) return;
             to -= y * rise;
         }
         tooth.at = to;

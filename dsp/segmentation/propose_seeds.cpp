@@ -183,12 +183,12 @@ std::vector<ProposedFragment> propose_seeds(const VoxelGraph& graph, const volum
     const std::vector<std::int32_t> depth = depths(graph, around, bright);
 
     const double h = std::min({values.spacing.x, values.spacing.y, values.spacing.z});
-    const double least = how.least_share * static_cast<double>(graph.nodes());
+    const double least = how.min_share * static_cast<double>(graph.nodes());
     // Thin bone has no deep cores.
     for (auto level = std::max(1, static_cast<std::int32_t>(how.depth / h)); level > 0; --level) {
         const Cores cores = cores_at(graph, around, depth, level);
         const auto without = std::count(cores.nearest.begin(), cores.nearest.end(), none);
-        if (static_cast<double>(without) > how.most_without_core * static_cast<double>(graph.nodes())) continue;
+        if (static_cast<double>(without) > how.max_without_core * static_cast<double>(graph.nodes())) continue;
         std::vector<ProposedFragment> fragments = fragments_of(graph, values, depth, cores, how, least);
         if (fragments.size() > 1 || level == 1) return fragments;
     }

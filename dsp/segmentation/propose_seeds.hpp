@@ -15,8 +15,8 @@ namespace tactus::segmentation {
 struct ProposeSeeds {
     double depth = 3e-3;        ///< m: depth of erosion to find cores; less where the bone is thin
     double weakest = 0.25;      ///< regions with a stronger connection are merged; see propose_seeds
-    double most_without_core = 0.05;  ///< of the nodes; with more, or one fragment, the bone is eroded less
-    double least_share = 0.01;  ///< fraction of all nodes: a smaller fragment gets no proposal
+    double max_without_core = 0.05;  ///< of the nodes; with more, or one fragment, the bone is eroded less
+    double min_share = 0.01;  ///< fraction of all nodes: a smaller fragment gets no proposal
     std::size_t strokes = 8;    ///< maximum per fragment
 };
 

@@ -12,9 +12,9 @@ namespace tactus::segmentation {
 
 namespace {
 
-constexpr int most_sides = 4;  // solved in one pass over the matrix
+constexpr int max_sides = 4;  // solved in one pass over the matrix
 
-using Sums = std::array<double, most_sides>;
+using Sums = std::array<double, max_sides>;
 
 /// Sum of u·v of each side.
 Sums dots(int sides, const std::vector<float>& u, const std::vector<float>& v) {
@@ -91,23 +91,23 @@ int conjugate_gradients(const Problem& problem, int sides, const std::vector<flo
     constexpr int patience = 12;
     Sums least;
     least.fill(std::numeric_limits<double>::infinity());
-    std::array<int, most_sides> least_at{};
+    std::array<int, max_sides> min_at{};
     int iteration = 0;
     const auto is_solved = [&] {
         const Sums rest = dots(sides, r, r);
         bool solved = true;
         for (std::size_t s = 0; s < stride; ++s) {
-            if (rest[s] < 0.25 * least[s]) least[s] = rest[s], least_at[s] = iteration;
+            if (rest[s] < 0.25 * least[s]) least[s] = rest[s], min_at[s] = iteration;
             solved = solved && (rest[s] <= accuracy.residual * accuracy.residual * scale[s] ||
-                                iteration - least_at[s] >= patience);
+                                iteration - min_at[s] >= patience);
         }
         return solved;
     };
     Sums rho{};
-    for (; iteration < accuracy.most_iterations && !is_solved(); ++iteration) {
+    for (; iteration < accuracy.max_iterations && !is_solved(); ++iteration) {
         problem.multigrid->apply(sides, r.data(), z.data(), work);
         const Sums next = dots(sides, r, z);
-        std::array<float, most_sides> beta{}, alpha{};
+        std::array<float, max_sides> beta{}, alpha{};
         for (std::size_t s = 0; s < stride; ++s)
             beta[s] = iteration == 0 || rho[s] == 0.0 ? 0.0f : static_cast<float>(next[s] / rho[s]);
         rho = next;
@@ -184,10 +184,10 @@ Walks random_walks(const VoxelGraph& graph, std::span<const std::uint8_t> seed, 
         start != nullptr && start->labels == labels && start->probability.size() == walks.probability.size();
 
     // The last label takes the rest.
-    const int panels = (labels - 1 + most_sides - 1) / most_sides;
+    const int panels = (labels - 1 + max_sides - 1) / max_sides;
     std::vector<int> iterations(static_cast<std::size_t>(panels), 0);
     run(panels, [&](int panel) {
-        const int first = panel * most_sides, sides = std::min(most_sides, labels - 1 - first);
+        const int first = panel * max_sides, sides = std::min(max_sides, labels - 1 - first);
         const auto stride = static_cast<std::size_t>(sides), offset = static_cast<std::size_t>(first);
         const std::vector<float> b = problem.right_side(first, sides);
         std::vector<float> x(b.size(), 0.0f);

@@ -17,7 +17,7 @@ namespace tactus::segmentation {
 /// Required accuracy of the solution.
 struct WalkAccuracy {
     double residual = 1e-4;  ///< of each label, relative to its right-hand side
-    int most_iterations = 200;
+    int max_iterations = 200;
 };
 
 /// Result of a solve. Probabilities are interleaved: node * labels + label. Those of a node lie in [0, 1] and their sum

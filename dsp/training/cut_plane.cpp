@@ -12,7 +12,7 @@ namespace tactus::training {
 
 namespace {
 
-constexpr std::size_t least_points = 20, most_columns = 400;
+constexpr std::size_t min_points = 20, max_columns = 400;
 constexpr double widest = 20e-3;  // m across the cut that is looked at, to each side
 
 /// The removed volume as samples, and its main axes.
@@ -94,7 +94,7 @@ std::vector<CutPoint> middle_surface(const CutBone& bone, const Frame& frame, co
         low_v = std::min(low_v, v);
         high_v = std::max(high_v, v);
     }
-    const double pitch = std::max({h, (high_u - low_u) / most_columns, (high_v - low_v) / most_columns});
+    const double pitch = std::max({h, (high_u - low_u) / max_columns, (high_v - low_v) / max_columns});
     std::vector<CutPoint> points;
     for (double u = low_u; u <= high_u; u += pitch)
         for (double v = low_v; v <= high_v; v += pitch)
@@ -159,7 +159,7 @@ bool settle(Frame& frame, const std::vector<CutPoint>& points, const PlannedCut&
 
 std::optional<CutPlane> fit_cut_plane(const CutBone& bone, const PlannedCut& cut, double kerf) {
     const Removed removed = removed_of(bone);
-    if (removed.points.size() < least_points) return std::nullopt;
+    if (removed.points.size() < min_points) return std::nullopt;
     const double h = bone.smallest_spacing();
     const auto& axis = removed.spread.vector[0];
     Vec3 normal(axis[0], axis[1], axis[2]);
@@ -172,7 +172,7 @@ std::optional<CutPlane> fit_cut_plane(const CutBone& bone, const PlannedCut& cut
     CutPlane plane;
     for (int round = 0; round < 3; ++round) {
         plane.points = middle_surface(bone, frame, removed.points, reach, h);
-        if (plane.points.size() < least_points) return std::nullopt;
+        if (plane.points.size() < min_points) return std::nullopt;
         if (!settle(frame, plane.points, cut, h)) break;
     }
     plane.point = frame.point;

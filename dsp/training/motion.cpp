@@ -10,12 +10,12 @@ namespace tactus::training {
 
 namespace {
 
-constexpr double least_stroke = 2e-3;  // m
+constexpr double min_stroke = 2e-3;  // m
 constexpr double no_force = 1e-3;      // N
 // A blade that grazes bone, or turns between two strokes, has no force for a few ticks; a force that was taken away stays
 // away for as long as a device needs to fade and return.
 constexpr double shortest_loss = 0.05;  // s
-constexpr std::size_t most_track = 100'000'000;
+constexpr std::size_t max_track = 100'000'000;
 
 double median_step(std::span<const AttemptSample> samples) {
     std::vector<double> steps;
@@ -51,7 +51,7 @@ Track low_pass(std::span<const AttemptSample> samples, double cutoff) {
     track.step = samples.size() > 1 ? median_step(samples) : 1e-3;
     const double length = samples.back().time - track.begin;
     const std::size_t count =
-        std::min(most_track, static_cast<std::size_t>(std::floor(length / track.step + 1e-6)) + 1);
+        std::min(max_track, static_cast<std::size_t>(std::floor(length / track.step + 1e-6)) + 1);
     // Each pass of the filter needs some periods of its frequency to settle; the ends are repeated that long.
     const auto room = static_cast<std::size_t>(std::ceil(0.3 / track.step));
     std::vector<Vec3> values(count + 2 * room);
@@ -154,10 +154,10 @@ MotionMeasures motion_of(std::span<const AttemptSample> samples, const PlannedCu
     const Track track = low_pass(samples);
     const std::size_t first = index_of(track, m.begin), last = index_of(track, m.end);
     for (std::size_t n = first; n < last; ++n) m.path += glm::length(track.position[n + 1] - track.position[n]);
-    m.strokes = static_cast<int>(reversals_of(track, first, last, cut.stroke, least_stroke).size() / 2);
+    m.strokes = static_cast<int>(reversals_of(track, first, last, cut.stroke, min_stroke).size() / 2);
     // Half strokes from reversal to reversal, also where the touch begins or ends within one: a part of one would have
     // less jerk, and the first and the last, which may hold a rest, more.
-    const std::vector<std::size_t> turns = reversals_of(track, 0, track.position.size() - 1, cut.stroke, least_stroke);
+    const std::vector<std::size_t> turns = reversals_of(track, 0, track.position.size() - 1, cut.stroke, min_stroke);
     double sum = 0.0, count = 0.0;
     for (std::size_t n = 1; n + 2 < turns.size(); ++n) {
         if (turns[n + 1] <= first || turns[n] >= last) continue;

@@ -17,7 +17,7 @@ namespace tactus::training {
 namespace {
 
 constexpr double fine = 0.05e-3;      // m: half the diagonal of the smallest part of the blade that is looked at
-constexpr std::size_t most_parts = 1024;  // of one size
+constexpr std::size_t max_parts = 1024;  // of one size
 
 double half_reach(const BladeSize& blade) { return 0.5 * (blade.length + blade.stroke); }
 
@@ -40,7 +40,7 @@ double clearance_of(const SparedStructure& structure, const BladeSize& blade, co
     struct Part {
         double x, y;
     };
-    std::array<Part, most_parts> parts, next;
+    std::array<Part, max_parts> parts, next;
     double half_x = half_reach(blade), half_y = 0.5 * blade.height;
     parts[0] = {0.0, -half_y};
     std::size_t count = 1;
@@ -53,7 +53,7 @@ double clearance_of(const SparedStructure& structure, const BladeSize& blade, co
             least = std::min(least, d);
             if (d - radius < least - fine) parts[kept++] = parts[n];
         }
-        if (radius <= fine || kept == 0 || 2 * kept > most_parts) return least - 0.5 * blade.kerf;
+        if (radius <= fine || kept == 0 || 2 * kept > max_parts) return least - 0.5 * blade.kerf;
         const bool along = half_x >= half_y;
         (along ? half_x : half_y) *= 0.5;
         const double dx = along ? half_x : 0.0, dy = along ? 0.0 : half_y;

@@ -15,7 +15,7 @@ namespace tactus::vessel {
 namespace {
 
 /// The least brightness between two places, averaged over three samples along the way.
-double least_between(const Scan& scan, const Vec3& from, const Vec3& to) {
+double min_between(const Scan& scan, const Vec3& from, const Vec3& to) {
     const double length = glm::length(to - from);
     const int parts = std::max(3, static_cast<int>(length / (0.5 * scan.voxel())));
     double least = std::numeric_limits<double>::infinity(), before = scan.any_value(from), last = before;
@@ -51,7 +51,7 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
         const Across frame = across(node.direction);
         for (const double share : {1.0, 0.7, 0.5, 0.35}) {
             const double radius = share * node.radius;
-            if (radius < std::max(search.settings.least_radius, 0.8 * voxel)) continue;
+            if (radius < std::max(search.settings.min_radius, 0.8 * voxel)) continue;
             for (int turn = 0; turn < 16; ++turn) {
                 const double angle = 2.0 * std::numbers::pi * turn / 16.0;
                 const Vec3 out = std::cos(angle) * frame.first + std::sin(angle) * frame.second;
@@ -67,19 +67,19 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
                     float value;
                     if (!scan.value(tube.centre, value)) continue;
                     tube = measured(scan, window, search.sampling, tube);
-                    if (tube.score < search.least_mean || tube.contrast < faintest * node.contrast || tube.valid < 0.6)
+                    if (tube.score < search.min_mean || tube.contrast < faintest * node.contrast || tube.valid < 0.6)
                         continue;
                     // What is thinner than the template looks faint in it.
                     const bool is_fitted = tube.contrast < level_of(tube.radius / voxel) * node.contrast;
                     if (is_fitted) {
                         tube = fitted(scan, window, search.sampling, tube, {0.5 * radius, radius, 0.5});
-                        if (tube.score < search.least_mean || tube.valid < 0.6) continue;
+                        if (tube.score < search.min_mean || tube.valid < 0.6) continue;
                     }
                     const double level = level_of(tube.radius / voxel) * node.contrast;
                     if (tube.contrast < level) continue;
                     if (is_taken(taken, tube.centre, 0.3 * radius)) continue;
                     const double gap = std::min(level, 0.5 * tube.contrast);
-                    if (least_between(scan, node.position, tube.centre) < tube.background + gap) continue;
+                    if (min_between(scan, node.position, tube.centre) < tube.background + gap) continue;
                     (is_fitted ? thin : found).push_back({tube, static_cast<int>(n)});
                 }
             }

@@ -42,9 +42,9 @@ double integrate(double distance, double radius) {  // in units of the blur
     return sum * step / 3.0;
 }
 
-constexpr double radius_step = 0.1, most_radius = 12.0, offset_step = 0.1, most_offset = 5.0;
-constexpr int radii = static_cast<int>(most_radius / radius_step) + 1;
-constexpr int offsets = static_cast<int>(2.0 * most_offset / offset_step) + 1;
+constexpr double radius_step = 0.1, max_radius = 12.0, offset_step = 0.1, max_offset = 5.0;
+constexpr int radii = static_cast<int>(max_radius / radius_step) + 1;
+constexpr int offsets = static_cast<int>(2.0 * max_offset / offset_step) + 1;
 
 /// Over the radius and over distance minus radius, both in units of the blur.
 struct Table {
@@ -55,15 +55,15 @@ struct Table {
             for (int o = 0; o < offsets; ++o) {
                 const double radius = r * radius_step;
                 values[static_cast<std::size_t>(r)][static_cast<std::size_t>(o)] =
-                    integrate(std::max(0.0, radius + o * offset_step - most_offset), radius);
+                    integrate(std::max(0.0, radius + o * offset_step - max_offset), radius);
             }
     }
 
     double at(double distance, double radius) const {
         const double offset = distance - radius;
-        if (radius >= most_radius)  // nearly a half plane; the second term is the curvature of its edge
+        if (radius >= max_radius)  // nearly a half plane; the second term is the curvature of its edge
             return 0.5 * std::erfc((offset + 0.5 / radius) / std::numbers::sqrt2);
-        const double o = std::clamp((offset + most_offset) / offset_step, 0.0, offsets - 1.001);
+        const double o = std::clamp((offset + max_offset) / offset_step, 0.0, offsets - 1.001);
         const double r = std::max(0.0, radius / radius_step);
         const std::size_t i = static_cast<std::size_t>(r), j = static_cast<std::size_t>(o);
         const double u = r - double(i), v = o - double(j);

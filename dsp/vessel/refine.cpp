@@ -14,8 +14,8 @@ namespace tactus::vessel {
 namespace {
 
 /// Tubes at even distances along a spline through `tubes`. A spline may swing beyond its points: no radius is above
-/// `most_radius`.
-std::vector<Tube> resampled(const std::vector<Tube>& tubes, double spacing, double most_radius) {
+/// `max_radius`.
+std::vector<Tube> resampled(const std::vector<Tube>& tubes, double spacing, double max_radius) {
     std::vector<double> along{0.0};
     for (std::size_t n = 1; n < tubes.size(); ++n)
         along.push_back(along.back() + std::max(1e-9, glm::length(tubes[n].centre - tubes[n - 1].centre)));
@@ -36,7 +36,7 @@ std::vector<Tube> resampled(const std::vector<Tube>& tubes, double spacing, doub
             tube.direction[axis] = point.slope;
         }
         tube.direction = glm::normalize(tube.direction);
-        tube.radius = std::clamp(splines[3](s).value, 1e-9, std::max(1e-9, most_radius));
+        tube.radius = std::clamp(splines[3](s).value, 1e-9, std::max(1e-9, max_radius));
         out.push_back(tube);
     }
     return out;
@@ -61,7 +61,7 @@ public:
         const double beyond = std::clamp(3.2 * q / tube.radius, 0.9, 4.5);
         const Window window = refining_window(axial, beyond);
         const double least = 0.25 * voxel_;
-        FitLimits limits{least, std::max(least, std::min(1.6 * tube.radius + voxel_, search_.settings.most_radius))};
+        FitLimits limits{least, std::max(least, std::min(1.6 * tube.radius + voxel_, search_.settings.max_radius))};
         limits.shift = std::max(0.6, voxel_ / tube.radius);
         limits.rounds = 2;
         limits.blur = q;
@@ -161,7 +161,7 @@ Refined refined_nodes(const Search& search, const std::vector<Tube>& tubes, doub
     std::vector<double> radii;
     for (const Tube& tube : tubes) radii.push_back(tube.radius);
     const double typical = median(radii);
-    std::vector<Tube> fine = resampled(tubes, std::max(0.8 * voxel, 0.35 * typical), search.settings.most_radius);
+    std::vector<Tube> fine = resampled(tubes, std::max(0.8 * voxel, 0.35 * typical), search.settings.max_radius);
     std::size_t middle = 0;
     for (std::size_t n = 0; n < fine.size(); ++n)
         if (glm::length(fine[n].centre - inside) < glm::length(fine[middle].centre - inside)) middle = n;
@@ -232,7 +232,7 @@ Refined refined_nodes(const Search& search, const std::vector<Tube>& tubes, doub
         node.is_lost = lost[n] != 0;
         node.is_radius_uncertain = uncertain[n] != 0;
         node.confidence = node.is_lost ? 0.0
-                                       : std::min(1.0, std::max(0.0, tube.score) / (2.0 * search.least_mean)) *
+                                       : std::min(1.0, std::max(0.0, tube.score) / (2.0 * search.min_mean)) *
                                              std::min(1.0, std::max(0.0, tube.contrast) / (0.8 * known));
         refined.nodes.push_back(node);
     }

@@ -29,8 +29,8 @@ struct Hypothesis {
 
 class Walk {
 public:
-    Walk(const Search& search, const Tube& start, const std::vector<Taken>& taken, double most_length)
-        : search_(search), settings_(search.settings), taken_(taken), most_length_(most_length), path_{start} {}
+    Walk(const Search& search, const Tube& start, const std::vector<Taken>& taken, double max_length)
+        : search_(search), settings_(search.settings), taken_(taken), max_length_(max_length), path_{start} {}
 
     OneWay run() {
         std::vector<Hypothesis> open;
@@ -42,10 +42,10 @@ public:
             const auto best = std::max_element(open.begin(), open.end(), [](const Hypothesis& a, const Hypothesis& b) {
                 return a.tubes.size() != b.tubes.size() ? a.tubes.size() < b.tubes.size() : a.mean() < b.mean();
             });
-            if (best->mean() < search_.least_mean) return finished(End::noise);
+            if (best->mean() < search_.min_mean) return finished(End::noise);
             const Tube next = best->tubes.front();
             if (search_.scan.inside_by(next.centre) < 0.5 * search_.scan.voxel()) return finished(End::border);
-            const double least = least_contrast(next.radius);
+            const double least = min_contrast(next.radius);
             if (next.contrast < least * recent.contrast) return finished(end_of_contrast(next, recent));
             if (!is_same_brightness(next, recent)) return finished(end_of_contrast(next, recent));
             if (const int met = meets(next); met >= 0) {
@@ -55,7 +55,7 @@ public:
             length += glm::length(next.centre - path_.back().centre);
             path_.push_back(next);
             if (is_much_larger()) return finished(End::larger_vessel);
-            if (length > most_length_) return finished(End::length);
+            if (length > max_length_) return finished(End::length);
             std::vector<Hypothesis> kept;
             for (Hypothesis& each : open)
                 if (each.tubes.size() > 1 && each.tubes.front().centre == next.centre) {
@@ -78,9 +78,9 @@ private:
     }
 
     /// Below 1.5 samples blur takes contrast away.
-    double least_contrast(double radius) const {
+    double min_contrast(double radius) const {
         const double voxels = radius / search_.scan.voxel();
-        return settings_.least_contrast * std::clamp(0.5 + 0.5 * (voxels - 0.75) / 0.75, 0.5, 1.0);
+        return settings_.min_contrast * std::clamp(0.5 + 0.5 * (voxels - 0.75) / 0.75, 0.5, 1.0);
     }
 
     /// Neither tissue nor another contrast than so far.
@@ -146,7 +146,7 @@ private:
     std::vector<Hypothesis> looked_ahead(std::vector<Hypothesis> open, const Recent& recent) {
         refused_ = End::noise;
         if (open.empty()) {
-            for (const Tube& tube : continued(path_.back(), path_.size() == 1 ? 0.8 : settings_.most_angle, recent))
+            for (const Tube& tube : continued(path_.back(), path_.size() == 1 ? 0.8 : settings_.max_angle, recent))
                 open.push_back({{tube}});
         }
         for (;;) {
@@ -157,7 +157,7 @@ private:
                     next.push_back(std::move(each));
                     continue;
                 }
-                for (const Tube& tube : continued(each.tubes.back(), settings_.most_angle, recent)) {
+                for (const Tube& tube : continued(each.tubes.back(), settings_.max_angle, recent)) {
                     next.push_back(each);
                     next.back().tubes.push_back(tube);
                     grown = true;
@@ -185,7 +185,7 @@ private:
     }
 
     /// Tubes one step on from `from`: local maxima of the score over a fan of directions, fitted.
-    std::vector<Tube> continued(const Tube& from, double most_angle, const Recent& recent) {
+    std::vector<Tube> continued(const Tube& from, double max_angle, const Recent& recent) {
         const int n = settings_.fan, side = 2 * n + 1;
         const Across frame = across(from.direction);
         const double step = std::max(settings_.step * from.radius, 0.8 * search_.scan.voxel());
@@ -193,8 +193,8 @@ private:
         const auto at = [&](int i, int j) -> Tube& { return fan[static_cast<std::size_t>((i + n) * side + j + n)]; };
         for (int i = -n; i <= n; ++i)
             for (int j = -n; j <= n; ++j) {
-                const double angle = most_angle * std::hypot(i, j) / n;
-                if (angle > most_angle * 1.2) continue;
+                const double angle = max_angle * std::hypot(i, j) / n;
+                if (angle > max_angle * 1.2) continue;
                 const double turn = std::atan2(j, i);
                 const Vec3 direction = std::cos(angle) * from.direction +
                                        std::sin(angle) * (std::cos(turn) * frame.first + std::sin(turn) * frame.second);
@@ -220,10 +220,10 @@ private:
         for (const auto& [score, peak] : peaks) {
             const Tube tube = settled(from, peak, step, recent);
             if (tube.score < search_.least_score ||
-                tube.contrast < 0.5 * least_contrast(tube.radius) * recent.contrast) {
+                tube.contrast < 0.5 * min_contrast(tube.radius) * recent.contrast) {
                 if (near_excluded(tube)) refused_ = End::excluded;
                 else if (search_.scan.inside_by(tube.centre) < tube.radius) refused_ = End::border;
-                else if (tube.contrast < 0.5 * least_contrast(tube.radius) * recent.contrast)
+                else if (tube.contrast < 0.5 * min_contrast(tube.radius) * recent.contrast)
                     refused_ = end_of_contrast(tube, recent);
                 continue;
             }
@@ -237,27 +237,27 @@ private:
     }
 
     Tube settled(const Tube& from, const Tube& peak, double step, const Recent& recent) const {
-        FitLimits limits{std::max(settings_.least_radius, 0.5 * search_.scan.voxel()), settings_.most_radius};
-        limits.least_radius = std::max(limits.least_radius, 0.7 * from.radius);
-        limits.most_radius = std::min(limits.most_radius, 1.25 * from.radius);
-        limits.most_radius = std::max(limits.most_radius, limits.least_radius);
+        FitLimits limits{std::max(settings_.min_radius, 0.5 * search_.scan.voxel()), settings_.max_radius};
+        limits.min_radius = std::max(limits.min_radius, 0.7 * from.radius);
+        limits.max_radius = std::min(limits.max_radius, 1.25 * from.radius);
+        limits.max_radius = std::max(limits.max_radius, limits.min_radius);
         limits.shift = 0.7;
         limits.angle = 0.4;
         limits.rounds = 2;
         Tube tube = fitted(search_.scan, search_.window, search_.sampling, peak, limits);
         // A sudden stenosis: what is far narrower is found from far narrower.
-        if (tube.contrast < 0.75 * recent.contrast && 0.6 * from.radius > limits.least_radius) {
+        if (tube.contrast < 0.75 * recent.contrast && 0.6 * from.radius > limits.min_radius) {
             Tube narrow = peak;
             narrow.radius = 0.55 * from.radius;
             FitLimits narrowly = limits;
-            narrowly.least_radius = std::max(settings_.least_radius, 0.35 * from.radius);
+            narrowly.min_radius = std::max(settings_.min_radius, 0.35 * from.radius);
             narrow = fitted(search_.scan, search_.window, search_.sampling, narrow, narrowly);
             if (narrow.score > tube.score) tube = narrow;
         }
         if (tube.radius > 1.05 * from.radius) {
             const double cap = 1.3 * edge_distance(search_.scan, tube);
             if (tube.radius > cap) {
-                tube.radius = std::max(cap, limits.least_radius);
+                tube.radius = std::max(cap, limits.min_radius);
                 tube = measured(search_.scan, search_.window, search_.sampling, tube);
             }
         }
@@ -271,7 +271,7 @@ private:
     const Search& search_;
     const TrackSettings& settings_;
     const std::vector<Taken>& taken_;
-    double most_length_;
+    double max_length_;
     std::vector<Tube> path_;
     End refused_ = End::noise;
     int meets_ = -1;
@@ -280,8 +280,8 @@ private:
 
 }  // namespace
 
-OneWay follow_one_way(const Search& search, const Tube& start, const std::vector<Taken>& taken, double most_length) {
-    return Walk(search, start, taken, most_length).run();
+OneWay follow_one_way(const Search& search, const Tube& start, const std::vector<Taken>& taken, double max_length) {
+    return Walk(search, start, taken, max_length).run();
 }
 
 }  // namespace tactus::vessel

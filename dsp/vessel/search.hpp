@@ -16,7 +16,7 @@ struct Search {
     Sampling sampling;
     /// Thresholds of t-statistics that pure noise does not reach (`tactus bench vessel --case noise`): of one step, of
     /// the mean over the look-ahead, of the tube at the seed, and of the mean over the nodes of a whole branch.
-    double least_score = 3.5, least_mean = 5.0, least_start = 6.0, least_branch = 7.5;
+    double least_score = 3.5, min_mean = 5.0, min_start = 6.0, min_branch = 7.5;
 };
 
 /// Returns the distance from the axis to the edge of the vessel, m, where the brightness, averaged along the axis,
@@ -41,7 +41,7 @@ struct OneWay {
 };
 
 /// Follows a vessel from `start` along its direction.
-OneWay follow_one_way(const Search& search, const Tube& start, const std::vector<Taken>& taken, double most_length);
+OneWay follow_one_way(const Search& search, const Tube& start, const std::vector<Taken>& taken, double max_length);
 
 /// Score of a side branch that leaves a vessel, and its first tube.
 struct SideBranch {

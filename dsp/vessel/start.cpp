@@ -80,8 +80,8 @@ Tube best_start(const Search& search, const Vec3& seed) {
     static const std::vector<Vec3> directions = half_sphere();
     const TrackSettings& settings = search.settings;
     std::vector<Tube> best;  // one per radius
-    const double least = std::max(settings.least_radius, 0.7 * search.scan.voxel());
-    for (double radius = least; radius <= settings.most_radius; radius *= 1.3) {
+    const double least = std::max(settings.min_radius, 0.7 * search.scan.voxel());
+    for (double radius = least; radius <= settings.max_radius; radius *= 1.3) {
         Tube found;
         for (const Vec3& direction : directions) {
             Tube tube;
@@ -97,8 +97,8 @@ Tube best_start(const Search& search, const Vec3& seed) {
         const double edge = edge_distance(search.scan, tube);
         if (tube.radius > 1.3 * edge) {
             if (0.75 * radius > 1.3 * edge) continue;
-            limits.most_radius = 1.3 * edge;
-            tube.radius = std::min(tube.radius, limits.most_radius);
+            limits.max_radius = 1.3 * edge;
+            tube.radius = std::min(tube.radius, limits.max_radius);
             tube = fitted(search.scan, search.window, search.sampling, tube, limits);
         }
         // The seed must lie in the vessel.
@@ -108,7 +108,7 @@ Tube best_start(const Search& search, const Vec3& seed) {
         if (off > std::max(1.3 * tube.radius, search.scan.voxel())) continue;
         best.push_back(tube);
     }
-    return first_peak(std::move(best), search.least_start);
+    return first_peak(std::move(best), search.min_start);
 }
 
 }  // namespace tactus::vessel

@@ -10,11 +10,11 @@ namespace tactus::vessel {
 
 namespace {
 
-constexpr double least_gain = 12.0;   ///< chi squared, for the five numbers of a narrowing
-constexpr double least_depth = 0.06;  ///< of the radius of the nodes; less is not looked at
-constexpr std::size_t most_fits = 5;
-constexpr double most_error = 0.06;  ///< of the depth; on phantoms the true error is about half of it
-constexpr double most_misfit = 2.0;
+constexpr double min_gain = 12.0;   ///< chi squared, for the five numbers of a narrowing
+constexpr double min_depth = 0.06;  ///< of the radius of the nodes; less is not looked at
+constexpr std::size_t max_fits = 5;
+constexpr double max_error = 0.06;  ///< of the depth; on phantoms the true error is about half of it
+constexpr double max_misfit = 2.0;
 
 /// Nodes of a branch as a narrowing is looked for in them.
 class Radii {
@@ -135,13 +135,13 @@ std::optional<Stenosis> measured_stenosis(const Search& search, const Noise& noi
         std::optional<Narrowing> narrowing;
         const double width = radii.below(place.node, (1.0 - 0.5 * place.depth) * place.reference);
         const bool is_short = width < 6.0 * place.reference;
-        if (place.depth >= least_depth && is_short && fits < most_fits) {
+        if (place.depth >= min_depth && is_short && fits < max_fits) {
             ++fits;
             narrowing = fitted_narrowing(search, noise, branch,
                                          {branch.nodes[place.node].along, place.reference, place.depth, width});
             if (!narrowing) found.is_uncertain = true;
             // A reference beyond what a vessel may have is that of something else.
-            else if (narrowing->gain < least_gain || narrowing->reference > search.settings.most_radius)
+            else if (narrowing->gain < min_gain || narrowing->reference > search.settings.max_radius)
                 narrowing.reset();
         }
         if (narrowing) {
@@ -151,7 +151,7 @@ std::optional<Stenosis> measured_stenosis(const Search& search, const Noise& noi
             found.radius = narrowing->reference * (1.0 - narrowing->depth);
             found.error_percent = 100.0 * narrowing->depth_error;
             // Beside 100 % the curvature of chi squared no longer tells the error.
-            found.is_uncertain = narrowing->depth_error > most_error || narrowing->misfit > most_misfit ||
+            found.is_uncertain = narrowing->depth_error > max_error || narrowing->misfit > max_misfit ||
                                  narrowing->depth + 2.0 * narrowing->depth_error > 1.0;
         }
         const double least = found.percent - found.error_percent;
@@ -160,7 +160,7 @@ std::optional<Stenosis> measured_stenosis(const Search& search, const Noise& noi
     if (fitted)
         for (Node& node : branch.nodes) {
             if (node.is_lost || std::abs(node.along - fitted->at) > fitted->width) continue;
-            node.radius = std::min(fitted->radius(node.along), search.settings.most_radius);
+            node.radius = std::min(fitted->radius(node.along), search.settings.max_radius);
             node.is_radius_uncertain = worst->is_uncertain;
         }
     return worst;

@@ -36,11 +36,11 @@ std::string text_of_end(std::size_t index, const Node& node, End end) {
 }  // namespace
 
 std::vector<TrackWarning> warnings_of(const Track& track) {
-    constexpr double least_percent = 50.0;
+    constexpr double min_percent = 50.0;
     std::vector<TrackWarning> warnings;
     for (std::size_t b = 0; b < track.branches.size(); ++b) {
         const Branch& branch = track.branches[b];
-        if (branch.stenosis && branch.stenosis->percent >= least_percent)
+        if (branch.stenosis && branch.stenosis->percent >= min_percent)
             warnings.push_back(
                 {b, branch.stenosis->node, fmt::format("branch {} is {}", b, text_of(branch, *branch.stenosis))});
         for (const LostStretch& stretch : branch.lost()) {

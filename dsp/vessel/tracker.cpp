@@ -15,7 +15,7 @@ namespace tactus::vessel {
 
 namespace {
 
-constexpr int most_branches = 64;
+constexpr int max_branches = 64;
 
 std::string in_mm(const Vec3& p) { return fmt::format("{:.1f}, {:.1f}, {:.1f} mm", p.x * 1e3, p.y * 1e3, p.z * 1e3); }
 
@@ -48,7 +48,7 @@ public:
         found_.track.contrast = start.contrast;
         found_.track.background = start.background;
         found_.track.excluded_above = scan_.excluded_above();
-        if (start.score < search_.least_start) return nothing(seed, start);
+        if (start.score < search_.min_start) return nothing(seed, start);
         if (!follow_seed(start, seed)) return nothing(seed, start);
         if (settings_.branches)
             for (std::size_t n = 0; n < found_.track.branches.size(); ++n) find_branches(n);
@@ -57,7 +57,7 @@ public:
             branch.stenosis = measured_stenosis(search_, found_.track.noise, branch);
         narrow_roots();
         doubt_ends();
-        found_.track.doubts = doubts_of(scan_, found_.track, settings_.most_radius);
+        found_.track.doubts = doubts_of(scan_, found_.track, settings_.max_radius);
         found_.track.seed_node = std::min(found_.track.seed_node, found_.track.branches[0].nodes.size() - 1);
         return std::move(found_);
     }
@@ -67,8 +67,8 @@ private:
         found_.track.branches.clear();
         found_.why =
             fmt::format("no vessel at {}: the best tube there has a t-statistic of {:.1f}, noise reaches {:.1f}",
-                        in_mm(seed), start.score, search_.least_start);
-        if (start.score >= search_.least_start)
+                        in_mm(seed), start.score, search_.min_start);
+        if (start.score >= search_.min_start)
             found_.why = fmt::format("no vessel at {}: what is bright there cannot be followed", in_mm(seed));
         return std::move(found_);
     }
@@ -89,12 +89,12 @@ private:
     bool follow_seed(const Tube& start, const Vec3& seed) {
         Tube back = start;
         back.direction = -back.direction;
-        const OneWay ahead = follow_one_way(search_, start, {}, settings_.most_length);
+        const OneWay ahead = follow_one_way(search_, start, {}, settings_.max_length);
         std::vector<Taken> taken;
         for (std::size_t n = 0; n < ahead.tubes.size(); ++n)
             if (glm::length(ahead.tubes[n].centre - start.centre) > 4.0 * start.radius)
                 taken.push_back({ahead.tubes[n].centre, ahead.tubes[n].radius, 0});
-        const OneWay behind = follow_one_way(search_, back, taken, settings_.most_length);
+        const OneWay behind = follow_one_way(search_, back, taken, settings_.max_length);
         std::vector<Tube> tubes(behind.tubes.rbegin(), behind.tubes.rend());
         for (Tube& tube : tubes) tube.direction = -tube.direction;
         tubes.push_back(start);
@@ -126,7 +126,7 @@ private:
         std::ranges::sort(radii);
         const double typical = radii[radii.size() / 2], count = double(branch.nodes.size());
         return branch.length() > std::max(4.0 * typical, 8.0 * scan_.voxel()) && seen > 0.6 * count &&
-               score / count > search_.least_branch;
+               score / count > search_.min_branch;
     }
 
     void add(Branch branch) {
@@ -138,7 +138,7 @@ private:
     void find_branches(std::size_t index) {
         const std::vector<SideBranch> sides = side_branches(search_, found_.track.branches[index], taken_);
         for (const SideBranch& side : sides) {
-            if (static_cast<int>(found_.track.branches.size()) >= most_branches) return;
+            if (static_cast<int>(found_.track.branches.size()) >= max_branches) return;
             follow_side(side, index);
         }
     }
@@ -152,13 +152,13 @@ private:
         };
         if (is_taken(side.tube.centre)) return;
         FitLimits limits{0.7 * side.tube.radius, std::min(1.4 * side.tube.radius, 1.1 * leaves.radius)};
-        limits.most_radius = std::max(limits.most_radius, limits.least_radius);
+        limits.max_radius = std::max(limits.max_radius, limits.min_radius);
         limits.shift = 0.8;
         Tube start = fitted(scan_, tracking_window(1.3, 2.0), search_.sampling, side.tube, limits);
         start.radius = std::min(start.radius, 1.3 * edge_distance(scan_, start));
-        if (start.score < search_.least_mean || is_taken(start.centre)) return;
+        if (start.score < search_.min_mean || is_taken(start.centre)) return;
         if (glm::dot(start.direction, side.tube.direction) < 0.0) start.direction = -start.direction;
-        const OneWay ahead = follow_one_way(search_, start, taken_, settings_.most_length);
+        const OneWay ahead = follow_one_way(search_, start, taken_, settings_.max_length);
         // Back to the parent, which the search for side branches keeps clear of.
         Tube back = start;
         back.direction = -back.direction;

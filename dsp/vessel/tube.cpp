@@ -12,20 +12,20 @@ namespace tactus::vessel {
 
 namespace {
 
-constexpr double least_weight = 0.1;
+constexpr double min_weight = 0.1;
 
-void add_layers(Window& window, double axial, double across_sigma, double axial_step, double most_across,
+void add_layers(Window& window, double axial, double across_sigma, double axial_step, double max_across,
                 const std::vector<double>& rings) {
     // Friman's window ends where the weight falls below 0.1: at 1.52 times its width.
-    const double end = axial * std::sqrt(-std::log(least_weight));
+    const double end = axial * std::sqrt(-std::log(min_weight));
     const int layers = static_cast<int>(std::ceil(end / axial_step - 0.5));
     const double thick = 2.0 * end / (2 * layers + 1);
     for (int layer = -layers; layer <= layers; ++layer) {
         const double a = layer * thick;
-        for (std::size_t ring = 0; ring + 1 < rings.size() && rings[ring] < most_across; ++ring) {
-            const double low = rings[ring], high = std::min(rings[ring + 1], most_across), b = 0.5 * (low + high);
+        for (std::size_t ring = 0; ring + 1 < rings.size() && rings[ring] < max_across; ++ring) {
+            const double low = rings[ring], high = std::min(rings[ring + 1], max_across), b = 0.5 * (low + high);
             const double weight = std::exp(-(a * a) / (axial * axial) - (b * b) / (across_sigma * across_sigma));
-            if (weight < least_weight) continue;
+            if (weight < min_weight) continue;
             const int places = low == 0.0 ? 4 : std::clamp(static_cast<int>(9.0 * b + 2.0), 6, 14);
             const double volume = std::numbers::pi * (high * high - low * low) * thick / places;
             for (int n = 0; n < places; ++n) {
@@ -252,7 +252,7 @@ private:
     }
 
     void confine(Pose5& pose, const Tube& tube, const Tube& start) const {
-        pose.radius = std::clamp(pose.radius, limits_.least_radius, limits_.most_radius);
+        pose.radius = std::clamp(pose.radius, limits_.min_radius, limits_.max_radius);
         const Vec3 centre = tube.centre + pose.s1 * frame_.first + pose.s2 * frame_.second;
         const Vec3 moved = centre - start.centre;
         const double most = limits_.shift * start.radius, length = glm::length(moved);
@@ -260,8 +260,8 @@ private:
             const Vec3 back = start.centre + moved * (most / length) - tube.centre;
             pose.s1 = glm::dot(back, frame_.first), pose.s2 = glm::dot(back, frame_.second);
         }
-        const double tilt = std::hypot(pose.t1, pose.t2), most_tilt = std::tan(limits_.angle);
-        if (tilt > most_tilt) pose.t1 *= most_tilt / tilt, pose.t2 *= most_tilt / tilt;
+        const double tilt = std::hypot(pose.t1, pose.t2), max_tilt = std::tan(limits_.angle);
+        if (tilt > max_tilt) pose.t1 *= max_tilt / tilt, pose.t2 *= max_tilt / tilt;
     }
 
     void normal_equations(const Pose5& pose, double k, double m, double scale, std::array<std::array<double, 7>, 7>& a,

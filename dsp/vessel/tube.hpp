@@ -48,7 +48,7 @@ struct Sampling {
 Tube measured(const Scan& scan, const Window& window, const Sampling& sampling, Tube tube);
 
 struct FitLimits {
-    double least_radius, most_radius;  ///< m
+    double min_radius, max_radius;  ///< m
     double shift = 1.0;  ///< greatest move across the axis, in radii of the start
     double angle = 0.6;  ///< largest rotation, rad
     int rounds = 3;  ///< number of times that the image is sampled again

@@ -20,7 +20,7 @@ namespace tactus::vibration {
 namespace {
 
 constexpr double highest_share = 0.42;  // of the output's rate: orders above it would alias when the blade speeds up
-constexpr double least_swell = 0.02;    // of the mean power
+constexpr double min_swell = 0.02;    // of the mean power
 constexpr Random noise{0x7ac705};
 
 }  // namespace
@@ -97,7 +97,7 @@ void ModelledSaw::add_noise() noexcept {
         const double at = static_cast<double>(m + 1) * angle;
         power += sound_.swell_cos[m] * std::cos(at) + sound_.swell_sin[m] * std::sin(at);
     }
-    double value = excitation_ * std::sqrt(std::max(power, least_swell)) * noise.normal(drawn_++);
+    double value = excitation_ * std::sqrt(std::max(power, min_swell)) * noise.normal(drawn_++);
     for (std::size_t k = 0; k < kept; ++k) value -= predictor_[k] * past_[k];
     std::move_backward(past_.begin(), past_.end() - 1, past_.end());
     past_[0] = value;

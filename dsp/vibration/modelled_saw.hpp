@@ -51,7 +51,7 @@ private:
     int until_next_ = 0;
     bool started_ = false;
 
-    std::array<double, SawModelSize::most_orders> level_{}, step_{}, cos_{}, sin_{};
+    std::array<double, SawModelSize::max_orders> level_{}, step_{}, cos_{}, sin_{};
     std::size_t order_count_ = 0;
 
     SawSound sound_;

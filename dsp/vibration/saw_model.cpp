@@ -26,12 +26,12 @@ constexpr std::size_t strokes_per_segment = 32, fewest_strokes = 16;
 // The resampling removes what lies above the band. A noise floor under it spares the filter that steep edge.
 constexpr double noise_floor = 3e-3;  // of the residual's rms
 
-using Phasors = std::array<std::complex<double>, SawModelSize::most_orders>;
+using Phasors = std::array<std::complex<double>, SawModelSize::max_orders>;
 
 /// The orders of one recording: their mean phasors, and their powers without the noise.
 struct Orders {
     Phasors mean{};  // peak amplitudes
-    std::array<double, SawModelSize::most_orders> rms{};
+    std::array<double, SawModelSize::max_orders> rms{};
     std::vector<double> residual;  // from sample `begin` on: where two segments overlap
     std::size_t begin = 0;
 };
@@ -53,7 +53,7 @@ Orders split(std::span<const double> samples, double rate) {
     const double per_segment = std::min<double>(strokes_per_segment, std::floor(strokes / 2.0));
     const auto length = static_cast<std::size_t>(2.0 * std::round(0.5 * per_segment * model_rate / rate));
     const std::size_t step = length / 2, segments = (samples.size() - length) / step + 1;
-    const auto count = std::min(SawModelSize::most_orders, static_cast<std::size_t>(highest_modelled / rate));
+    const auto count = std::min(SawModelSize::max_orders, static_cast<std::size_t>(highest_modelled / rate));
     Orders out;
     // The windows of the segments add up to 1 where two of them overlap.
     std::vector<double> periodic(samples.size(), 0.0);
@@ -132,8 +132,8 @@ void fit_residual(std::vector<double> residual, std::size_t begin, double rate, 
 
 SawModel fit_saw_model(std::span<const SawRecording> recordings) {
     if (recordings.empty()) throw Error("the model of a saw needs at least one recording");
-    if (recordings.size() > SawModel::most_conditions)
-        throw Error(fmt::format("the model of a saw takes at most {} recordings, not {}", SawModel::most_conditions,
+    if (recordings.size() > SawModel::max_conditions)
+        throw Error(fmt::format("the model of a saw takes at most {} recordings, not {}", SawModel::max_conditions,
                                 recordings.size()));
     const auto cuts = [](const SawRecording& recording) { return recording.cutting; };
     const auto known = [](const SawRecording& recording) { return recording.cutting && recording.density > 0.0; };

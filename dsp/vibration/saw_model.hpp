@@ -14,7 +14,7 @@ namespace tactus::vibration {
 
 /// Sizes of every model.
 struct SawModelSize {
-    static constexpr std::size_t most_orders = 40;
+    static constexpr std::size_t max_orders = 40;
     static constexpr std::size_t lines = 36;  ///< order of the residual's filter
     static constexpr std::size_t swells = 4;  ///< orders of the residual's power over the stroke
     static constexpr double residual_rate = 8000.0;  ///< Hz: the residual is modelled up to 3.2 kHz
@@ -22,7 +22,7 @@ struct SawModelSize {
 
 /// Sound of one condition, in the unit of the recordings.
 struct SawSound {
-    std::array<double, SawModelSize::most_orders> orders{};  ///< rms of order 1, 2, …
+    std::array<double, SawModelSize::max_orders> orders{};  ///< rms of order 1, 2, …
     double residual = 0.0;  ///< rms
     /// Line spectral frequencies, rad per sample at `residual_rate`.
     std::array<double, SawModelSize::lines> lines{};
@@ -41,9 +41,9 @@ struct SawCondition {
 struct SawModel {
     std::vector<SawCondition> conditions;
     /// Phase of each order in every condition, rad at phase 0 of the blade: Σ √2 orders[k] cos((k + 1) φ + phases[k]).
-    std::array<double, SawModelSize::most_orders> phases{};
+    std::array<double, SawModelSize::max_orders> phases{};
 
-    static constexpr std::size_t most_conditions = SawVoice::most_recordings;
+    static constexpr std::size_t max_conditions = SawVoice::max_recordings;
 };
 
 /// Fits one condition per recording. The rate is refined within ±2 %. Orders: Hann-weighted Fourier sums over 32

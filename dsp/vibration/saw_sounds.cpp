@@ -45,8 +45,8 @@ auto& entry(List& list, Value value_of, double value, double same) {
 
 SawSounds::SawSounds(const SawModel& model) {
     if (model.conditions.empty()) throw Error("the model of a saw needs at least one condition");
-    if (model.conditions.size() > SawModel::most_conditions)
-        throw Error(fmt::format("the model of a saw has at most {} conditions, not {}", SawModel::most_conditions,
+    if (model.conditions.size() > SawModel::max_conditions)
+        throw Error(fmt::format("the model of a saw has at most {} conditions, not {}", SawModel::max_conditions,
                                 model.conditions.size()));
     for (const SawCondition& condition : model.conditions) {
         add(condition.cutting, condition, 1.0);

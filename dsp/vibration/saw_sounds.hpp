@@ -18,7 +18,7 @@ class SawSounds {
 public:
     SawSounds() = default;
     /// Without free-air conditions, cutting ones 12 dB lower replace them; without cutting ones, free-air ones replace
-    /// them unchanged. Throws Error when the model has no condition, or more than `most_conditions`. Allocates.
+    /// them unchanged. Throws Error when the model has no condition, or more than `max_conditions`. Allocates.
     explicit SawSounds(const SawModel& model);
 
     /// `rate` in Hz, `load` in N, `density` in kg/m³ (0: unknown, the middle of the recorded ones). Does not allocate.

@@ -25,8 +25,8 @@ bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, const SawBehaviour& behaviour) {
     if (!positive(rate)) throw Error("the sample rate of a saw must be above 0 Hz");
     if (recordings.empty()) throw Error("a saw needs at least one recording");
-    if (recordings.size() > most_recordings)
-        throw Error(fmt::format("a saw takes at most {} recordings, not {}", most_recordings, recordings.size()));
+    if (recordings.size() > max_recordings)
+        throw Error(fmt::format("a saw takes at most {} recordings, not {}", max_recordings, recordings.size()));
     *this = SawVoice{};
     behaviour_ = behaviour;
     blade_ = BladeMotion(rate, behaviour);
@@ -42,7 +42,7 @@ void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, co
     }
     for (const bool cutting : {false, true}) {
         if (any[cutting]) continue;
-        for (std::size_t i = 0, count = layers_.size(); i < count && count <= most_recordings; ++i) {
+        for (std::size_t i = 0, count = layers_.size(); i < count && count <= max_recordings; ++i) {
             if (layers_[i].cutting == cutting) break;
             Layer stand_in = layers_[i];
             stand_in.cutting = cutting;

@@ -28,7 +28,7 @@ namespace tactus::vibration {
 class SawVoice {
 public:
     static constexpr double greatest_pitch_change = 0.15;
-    static constexpr std::size_t most_recordings = 32;
+    static constexpr std::size_t max_recordings = 32;
 
     /// `rate`: sample rate of the output. Throws Error when there is no recording, a value is not positive and finite,
     /// or a recording is shorter than 8 cycles. Resamples and loops each recording, which allocates.
@@ -72,7 +72,7 @@ private:
     std::vector<Layer> layers_;
     std::vector<double> likeness_;  // loops × loops
     std::vector<Group> groups_[2];  // free air, cutting; by rate
-    std::array<std::size_t, 2 * most_recordings> active_{};  // layers that play or are about to, in order
+    std::array<std::size_t, 2 * max_recordings> active_{};  // layers that play or are about to, in order
     std::size_t active_count_ = 0;
     SawBehaviour behaviour_;
     BladeMotion blade_;

@@ -180,7 +180,7 @@ RunRows marrow_of(const RunRows& solid, const RunRows& air, const Components::Bo
         is_marrow[n] = !holds_ball(cavities, n, limits.half_width - limits.closing, spacing);
     const std::vector<std::size_t> with_air = overlaps(cavities, air);
     for (std::size_t n = 0; n < is_marrow.size(); ++n)
-        if (static_cast<double>(with_air[n]) > limits.most_air * static_cast<double>(cavities.voxels[n]))
+        if (static_cast<double>(with_air[n]) > limits.max_air * static_cast<double>(cavities.voxels[n]))
             is_marrow[n] = 0;
     const RunRows kept = parts_of(cavities.rows, [&](std::size_t part) { return is_marrow[part] != 0; });
     if (kept.runs.empty()) return kept;

@@ -12,7 +12,7 @@ namespace tactus::volume {
 struct MarrowLimits {
     double closing = 1.5e-3;     ///< m: holes of a shell up to twice as wide are closed
     double half_width = 12e-3;   ///< m: a cavity in which a larger ball fits is not marrow, such as the cranium
-    double most_air = 0.05;      ///< fraction of samples that are air: a cavity with more is a sinus
+    double max_air = 0.05;      ///< fraction of samples that are air: a cavity with more is a sinus
 };
 
 /// Returns the marrow in the samples of a box. `solid`: bone and its closed hollows. `air`: samples that are air.

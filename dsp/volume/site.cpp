@@ -17,13 +17,13 @@ namespace {
 
 constexpr double near_enough = 30e-3;  // m from a point that somebody names to the bone
 constexpr double far = 1.0;  // m: distance outside of the grid, where there is no bone
-constexpr double least_thickness = 1e-3;  // m; less is noise of the segmentation
+constexpr double min_thickness = 1e-3;  // m; less is noise of the segmentation
 constexpr double hollow_density = 200.0;  // kg/m³: below it, filled air
 constexpr double metal_density = 2500.0;   // kg/m³: above it, no bone
-constexpr double least_width = 8e-3;       // m: narrower bone is a process, or a wire in it
+constexpr double min_width = 8e-3;       // m: narrower bone is a process, or a wire in it
 constexpr double longest_hollow = 3e-3;  // m: longest gap between two walls of one bone
-constexpr double least_turn = 0.17;        // rad between a given stroke and the feed
-constexpr std::size_t most_candidates = 12'000;
+constexpr double min_turn = 0.17;        // rad between a given stroke and the feed
+constexpr std::size_t max_candidates = 12'000;
 
 class Search {
 public:
@@ -59,10 +59,10 @@ public:
         const Vec3 feed = glm::length(approach) > 0.0 ? glm::normalize(approach)
                           : glm::length(g) > 0.1      ? -glm::normalize(g)
                                                       : Vec3(0.0, 0.0, -1.0);
-        const double deep = std::max(thickness(*surface, feed), least_thickness);
+        const double deep = std::max(thickness(*surface, feed), min_thickness);
         if (const double length = glm::length(along); length > 0.0) {
             const Vec3 across = along / length - feed * glm::dot(along / length, feed);
-            if (!(glm::length(across) > std::sin(least_turn)))
+            if (!(glm::length(across) > std::sin(min_turn)))
                 throw Error("the stroke has nearly the direction of the approach; give one across it");
             const Vec3 stroke = glm::normalize(across);
             return SawSite{*surface, feed, stroke, deep, std::max(width(*surface, feed, stroke, 0.5 * deep), 0.0)};
@@ -95,7 +95,7 @@ private:
                     for (int i = 0; i < distance_.size[0]; i += stride[0])
                         if (std::abs(static_cast<double>(distance_.at(i, j, k))) < 0.5 * pitch)
                             found.push_back(static_cast<int>(distance_.index(i, j, k)));
-            if (found.size() <= most_candidates) return found;
+            if (found.size() <= max_candidates) return found;
         }
     }
 
@@ -229,7 +229,7 @@ private:
         for (const double height : {2e-3, 5e-3, request_.blade_height})
             for (double t = 0.0; t <= reach_; t += 2.5e-3)
                 for (const double side : {-t, t})
-                    if (d(p - feed * height + stroke * side) < request_.least_gap) return false;
+                    if (d(p - feed * height + stroke * side) < request_.min_gap) return false;
         return true;
     }
 
@@ -277,7 +277,7 @@ private:
         const Vec3 feed = -glm::normalize(g);
         const double deep = thickness(p, feed);
         if (value_at(density_, p + feed * (0.5 * deep), 0.0) > metal_density) return;
-        if (deep < least_thickness || !is_open(p - feed * 3e-3, -feed, 2e-3)) return;
+        if (deep < min_thickness || !is_open(p - feed * 3e-3, -feed, 2e-3)) return;
         const double depth_score =
             liking(p, feed) * (deep < request_.best_depth ? deep / request_.best_depth : request_.best_depth / deep);
         if (depth_score <= best_score_) return;
@@ -289,11 +289,11 @@ private:
         if (!body_is_free(p, feed, stroke)) return;
         const auto [one, other] = widths(p, feed, stroke, 0.5 * deep);
         const double wide = one + other;
-        if (wide < least_thickness) return;
+        if (wide < min_thickness) return;
         double score = depth_score * request_.blade_length / (request_.blade_length + wide);
         // A blade is put on the middle of a bone, not on its edge, nor on what sticks out of it.
         score *=
-            std::min(1.0, 0.2 + 1.6 * std::min(one, other) / std::max(one, other)) * std::min(1.0, wide / least_width);
+            std::min(1.0, 0.2 + 1.6 * std::min(one, other) / std::max(one, other)) * std::min(1.0, wide / min_width);
         // Flat bone is cut through its thickness, not from its edge.
         score *= std::min(1.0, wide / deep);
         if (score <= best_score_) return;
@@ -335,7 +335,7 @@ double resting_clearance(const Grid& distance, const SawSite& site, double clear
         for (const double height : {0.0, 0.5 * request.blade_height, request.blade_height})
             for (double t = -reach; t <= reach; t += 2.0 * step) {
                 const Vec3 at = site.point - site.feed * (away + height) + site.stroke * t;
-                if (value_at(distance, at, far) < request.least_gap) return false;
+                if (value_at(distance, at, far) < request.min_gap) return false;
             }
         return true;
     };

@@ -13,7 +13,7 @@ struct SiteRequest {
     double blade_length = 40e-3;   ///< of the tooth line
     double blade_height = 10e-3;   ///< behind the teeth
     double travel = 10e-3;  ///< of the hand to either side, along the blade
-    double least_gap = 0.8e-3;  ///< between the blade's middle plane and other bone
+    double min_gap = 0.8e-3;  ///< between the blade's middle plane and other bone
     double best_depth = 12e-3;  ///< preferred thickness of the bone: long enough to perceive, short enough to finish
 };
 

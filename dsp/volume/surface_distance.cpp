@@ -118,7 +118,7 @@ struct Far {
 // Until no distance decreases; skips parts of rows without changes in or beside them, and layers without such parts: in
 // nine of ten rounds only some thousandths of a grid still change.
 void settle(const Far& far, const RunJobs& run) {
-    constexpr int most_rounds = 60;
+    constexpr int max_rounds = 60;
     const auto& size = far.feet.layout.size;
     const int parts = (size[0] + part_length - 1) / part_length, rows = size[1], layers = size[2];
     const auto at = [parts, rows](int part, int j, int k) {
@@ -129,7 +129,7 @@ void settle(const Far& far, const RunJobs& run) {
     std::vector<char> active(at(0, 0, layers), 1), changed(active.size());
     std::vector<char> is_active(static_cast<std::size_t>(layers), 1), has_changed(is_active.size());  // per layer
     const auto of = [](std::vector<char>& flags, int k) -> char& { return flags[static_cast<std::size_t>(k)]; };
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < max_rounds; ++round) {
         for (int k = 0; k < layers; ++k) {
             if (of(has_changed, k))
                 std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(at(0, 0, k)), at(0, 0, 1), char{0});

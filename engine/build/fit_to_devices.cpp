@@ -18,7 +18,7 @@ namespace {
 /// Of the devices that a node drives and a hand feels, the one with the least of what `stated` returns; 0 counts as none.
 /// Null: it drives none.
 template <class Stated>
-const DeviceSlot* least_driven(const LiveNode& node, Stated&& stated) {
+const DeviceSlot* min_driven(const LiveNode& node, Stated&& stated) {
     const auto value = [&](const DeviceSlot& slot) {
         const double least = stated(slot.port.info);
         return least > 0.0 ? least : HUGE_VAL;
@@ -31,7 +31,7 @@ const DeviceSlot* least_driven(const LiveNode& node, Stated&& stated) {
 }
 
 const DeviceSlot* softest_driven(const LiveNode& node) {
-    return least_driven(node, [](const DeviceInfo& info) { return info.max_stiffness; });
+    return min_driven(node, [](const DeviceInfo& info) { return info.max_stiffness; });
 }
 
 /// Of the largest stable stiffness: measured limits are up to 20 % below the formula's.
@@ -72,7 +72,7 @@ void GenerationBuilder::scale_forces() {
                                                             &OptionText::name) != plan().patch.nodes[n].settings.end())
             continue;
         const LiveNode& sink = *made_->nodes[static_cast<std::size_t>(spring.sink)];
-        const DeviceSlot* const slot = least_driven(sink, [](const DeviceInfo& info) { return info.max_force; });
+        const DeviceSlot* const slot = min_driven(sink, [](const DeviceInfo& info) { return info.max_force; });
         const auto most = plan().nodes[static_cast<std::size_t>(spring.sink)].params.find("max_force");
         if (!slot || !is_unknown(*slot) || most == plan().nodes[static_cast<std::size_t>(spring.sink)].params.end())
             continue;

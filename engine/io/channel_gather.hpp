@@ -19,7 +19,7 @@ namespace tactus::io {
 /// next one. A channel that comes too late (a new node) is silent for one block and required from then on.
 class ChannelGather {
 public:
-    static constexpr int most_channels = 64;
+    static constexpr int max_channels = 64;
 
     /// Call before the first sample, or after `take`.
     void resize(int channels, int max_frames) {

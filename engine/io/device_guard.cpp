@@ -50,7 +50,7 @@ void DeviceGuard::note(control::Fault reason, control::ForceState state, std::in
     if (const auto now = static_cast<std::int64_t>(state); (told & 15) != now)
         state_.store(16 * tick + now, std::memory_order_release);
     if (reason == last_) return;
-    const auto keep = [this] { faults_[static_cast<std::size_t>(newest_.number) % most_faults].write(newest_); };
+    const auto keep = [this] { faults_[static_cast<std::size_t>(newest_.number) % max_faults].write(newest_); };
     if (last_ != control::Fault::none) {
         newest_.over = tick;
         keep();
@@ -67,11 +67,11 @@ void DeviceGuard::note(control::Fault reason, control::ForceState state, std::in
 std::vector<DeviceFault> DeviceGuard::faults() const {
     std::vector<DeviceFault> all;
     const std::int64_t count = count_.load(std::memory_order_acquire);
-    for (std::int64_t n = std::max<std::int64_t>(0, count - most_faults); n < count; ++n) {
+    for (std::int64_t n = std::max<std::int64_t>(0, count - max_faults); n < count; ++n) {
         DeviceFault fault;
         std::uint64_t version = 0;
         // A newer one may have taken its place meanwhile.
-        if (faults_[static_cast<std::size_t>(n) % most_faults].read(fault, version) && fault.number == n)
+        if (faults_[static_cast<std::size_t>(n) % max_faults].read(fault, version) && fault.number == n)
             all.push_back(fault);
     }
     return all;

@@ -80,7 +80,7 @@ public:
     /// True when retired and without force.
     bool is_at_rest() const noexcept { return at_rest_.load(std::memory_order_acquire); }
 
-    static constexpr std::size_t most_faults = 64;
+    static constexpr std::size_t max_faults = 64;
     /// The newest faults, oldest first. Any thread, never in a tick.
     std::vector<DeviceFault> faults() const;
     /// Any thread.
@@ -95,7 +95,7 @@ private:
     bool refused_ = false;  // thread of the tick
     control::Fault last_ = control::Fault::none;
     DeviceFault newest_;  // thread of the tick
-    std::array<hosted::Seqlock<DeviceFault>, most_faults> faults_;  // a ring
+    std::array<hosted::Seqlock<DeviceFault>, max_faults> faults_;  // a ring
     std::atomic<std::int64_t> count_{0};  // of all faults
     std::atomic<std::int64_t> state_{0};  // 16 * since + state
 };

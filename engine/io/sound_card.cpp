@@ -70,7 +70,7 @@ bool SoundCard::flush() noexcept {
 bool SoundCard::write_frames(std::int64_t first, const float* frames, std::size_t count) noexcept {
     static constexpr std::size_t piece = 256;
     static constexpr float silence[piece] = {};
-    const std::size_t most_silent = piece / static_cast<std::size_t>(channels());
+    const std::size_t max_silent = piece / static_cast<std::size_t>(channels());
     std::size_t lost = 0;
     if (expected_ < 0) {
         expected_ = first;
@@ -79,7 +79,7 @@ bool SoundCard::write_frames(std::int64_t first, const float* frames, std::size_
     // What the ring has no room for is not worth writing as silence.
     auto gap = static_cast<std::size_t>(first - expected_);
     for (const std::size_t room = sink_->writable(); gap > room; gap = room) lost += gap - room;
-    for (; gap > 0; gap -= std::min(gap, most_silent)) sink_->write(silence, std::min(gap, most_silent));
+    for (; gap > 0; gap -= std::min(gap, max_silent)) sink_->write(silence, std::min(gap, max_silent));
     lost += count - sink_->write(frames, count);
     expected_ = first + static_cast<std::int64_t>(count);
     if (lost > 0) shift_.fetch_add(static_cast<std::int64_t>(lost), std::memory_order_relaxed);

@@ -11,7 +11,7 @@ namespace tactus::observe {
 namespace {
 
 constexpr std::size_t bone_ring_bytes = std::size_t{1} << 23;
-constexpr std::size_t least_ring_bytes = std::size_t{1} << 14, most_ring_bytes = std::size_t{1} << 20;
+constexpr std::size_t min_ring_bytes = std::size_t{1} << 14, max_ring_bytes = std::size_t{1} << 20;
 constexpr double kept_seconds = 1.0;
 
 bool is_bone(const ValueType& type) { return type == value::snapshot<volume::BoneSnapshot>; }
@@ -190,7 +190,7 @@ void ObservedPort::make_ring() {
         const double wanted =
             kept_seconds * rate_of(identity.period) *
             static_cast<double>(value_size_ + sizeof(Head) / static_cast<std::size_t>(identity.max_frames) + 1);
-        bytes = std::bit_ceil(std::clamp(static_cast<std::size_t>(wanted), least_ring_bytes, most_ring_bytes));
+        bytes = std::bit_ceil(std::clamp(static_cast<std::size_t>(wanted), min_ring_bytes, max_ring_bytes));
         bytes = std::max(bytes, std::bit_ceil(4 * longest));
     }
     owned_ring_ = std::make_unique<Ring<std::byte>>(bytes);

@@ -14,7 +14,7 @@ void PastValues::add(Flicks when, const std::byte* value) {
     }
     when_.push_back(when);
     values_.insert(values_.end(), value, value + size_);
-    if (bytes() > most_bytes) thin_out();
+    if (bytes() > max_bytes) thin_out();
 }
 
 /// Half as many from now on, as far as they are close to each other.

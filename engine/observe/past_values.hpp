@@ -25,7 +25,7 @@ public:
     std::optional<Flicks> at(Flicks until, std::byte* value) const;
     std::size_t bytes() const { return values_.size() + when_.size() * sizeof(Flicks); }
 
-    static constexpr std::size_t most_bytes = std::size_t{1} << 28;
+    static constexpr std::size_t max_bytes = std::size_t{1} << 28;
 
 private:
     void thin_out();

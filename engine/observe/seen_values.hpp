@@ -42,7 +42,7 @@ struct SeenScene {
         std::int64_t stands = 0;  ///< 1: placed: locked, or fitted to another
     };
     std::uint64_t count = 0;
-    std::array<Object, coupling::Scene::most_objects> objects;
+    std::array<Object, coupling::Scene::max_objects> objects;
 };
 
 /// The shape of a body, in its own frame, m.

@@ -117,7 +117,7 @@ struct GroupTelemetry {
     LateCounts withheld;  ///< values of this group that others missed, by the cause of the delay; live only
     mutable std::atomic<std::int64_t> awaited{0};  ///< missed values not yet explained; written by their consumers
     std::atomic<double> force_N{0.0};  ///< on the hand, in the last tick; with several devices the largest
-    mutable std::atomic<double> most_force_N{0.0};  ///< since the last `take_most_force`
+    mutable std::atomic<double> max_force_N{0.0};  ///< since the last `take_most_force`
     DurationHistogram execution;  ///< ns per call
     DurationHistogram lateness;  ///< ns from release to start, live only
 
@@ -125,8 +125,8 @@ struct GroupTelemetry {
     void note_force(double newtons) noexcept {
         force_N.store(newtons, std::memory_order_relaxed);
         // A concurrent `take_most_force` returns this value now or at its next call.
-        if (newtons > most_force_N.load(std::memory_order_relaxed))
-            most_force_N.store(newtons, std::memory_order_relaxed);
+        if (newtons > max_force_N.load(std::memory_order_relaxed))
+            max_force_N.store(newtons, std::memory_order_relaxed);
     }
     /// Adds the counts of another group; both must have ended.
     void merge(const GroupTelemetry& other) noexcept {
@@ -141,7 +141,7 @@ struct GroupTelemetry {
         lateness.merge(other.lateness);
     }
     /// Returns the largest force since the previous call; one thread.
-    double take_most_force() const noexcept { return most_force_N.exchange(0.0, std::memory_order_relaxed); }
+    double take_most_force() const noexcept { return max_force_N.exchange(0.0, std::memory_order_relaxed); }
 };
 
 }  // namespace tactus::observe

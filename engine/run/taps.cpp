@@ -14,12 +14,12 @@ namespace {
 
 // How long a disk may make values wait, and the least and most memory for that.
 constexpr double waits_s = 2.0;
-constexpr std::size_t least_bytes = std::size_t{1} << 20, most_bytes = std::size_t{1} << 26;
+constexpr std::size_t min_bytes = std::size_t{1} << 20, max_bytes = std::size_t{1} << 26;
 
 io::Stream::Room room_for(const io::FrameLayout& layout, const GroupRuntime& group) {
     const auto frames = static_cast<std::size_t>(group.max_frames);
     const double a_second = static_cast<double>(layout.bytes) * rate_of(group.plan->period);
-    const auto wanted = std::clamp(static_cast<std::size_t>(waits_s * a_second), least_bytes, most_bytes);
+    const auto wanted = std::clamp(static_cast<std::size_t>(waits_s * a_second), min_bytes, max_bytes);
     return {layout.bytes, frames, std::max(wanted, 4 * frames * layout.bytes)};
 }
 

@@ -68,7 +68,7 @@ io::RecordedDevice read_device(const ParsedJson& json) {
     const auto v = [&n](std::size_t i) { return number_of(n.at(i)); };
     device.first.pose = {Vec3(v(0), v(1), v(2)), Quat(v(3), v(4), v(5), v(6))};
     device.first.twist = {Vec3(v(7), v(8), v(9)), Vec3(v(10), v(11), v(12))};
-    for (std::size_t i = 0; i < most_fingers; ++i) {
+    for (std::size_t i = 0; i < max_fingers; ++i) {
         const ParsedJson& finger = first.at("fingers").at(i);
         device.first.fingers[i] = {number_of(finger.at(0)), number_of(finger.at(1)), finger.at(2)};
     }
@@ -86,12 +86,12 @@ TakeStreamInfo read_output(const ParsedJson& file, const ParsedJson& output, int
     info.period = file.at("period_flicks");
     info.start = file.at("start");
     info.channel = channel;
-    info.channels = static_cast<int>(std::min<std::size_t>(output.at("channels").size(), most_channels));
+    info.channels = static_cast<int>(std::min<std::size_t>(output.at("channels").size(), max_channels));
     if (!info.file.starts_with("streams/") || info.file.find("..") != std::string::npos)
         throw Error(fmt::format("'{}' is no stream of the take", info.file));
     if (info.period < 1 || info.start < 0)
         throw Error(fmt::format("the stream of {} has no period, or begins before the run", info.port));
-    if (info.channels < 1 || info.channel + info.channels > most_channels)
+    if (info.channels < 1 || info.channel + info.channels > max_channels)
         throw Error(fmt::format("the stream of {} has no channels, or more than a file holds", info.port));
     return info;
 }

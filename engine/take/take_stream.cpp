@@ -34,8 +34,8 @@ void write_names(SNDFILE* file, const std::vector<std::string>& names) {
             i + 1, names[i]);
     xml += "</TRACK_LIST></BWFXML>";
     // libsndfile reads headers of up to 100 kB. The take lists the channels, too.
-    constexpr std::size_t most_bytes = 80'000;
-    if (xml.size() > most_bytes) return;
+    constexpr std::size_t max_bytes = 80'000;
+    if (xml.size() > max_bytes) return;
     if (xml.size() % 2 != 0) xml += ' ';
     SF_CHUNK_INFO chunk{};
     std::memcpy(chunk.id, "iXML", 4);
@@ -170,10 +170,10 @@ TakeStreamReader::TakeStreamReader(const std::filesystem::path& path, const Take
     if (std::filesystem::exists(path)) file::require_file(path);
     file_->handle.reset(sf_open(path.c_str(), SFM_READ, &format));
     if (!file_->handle) throw Error(fmt::format("{}: cannot read: {}", path.string(), sf_strerror(nullptr)));
-    if (format.channels < info.channel + info.channels || format.channels > most_channels)
+    if (format.channels < info.channel + info.channels || format.channels > max_channels)
         throw Error(fmt::format("{}: {} channels; {} needs those from {} to {}, and a file has at most {}",
                                 path.string(), format.channels, info.port, info.channel + 1,
-                                info.channel + info.channels, most_channels));
+                                info.channel + info.channels, max_channels));
     file_->channels = static_cast<std::size_t>(format.channels);
     file_->first_channel = static_cast<std::size_t>(info.channel);
     file_->width = info.channels;

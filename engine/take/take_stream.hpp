@@ -27,7 +27,7 @@ struct TakeStreamInfo {
 };
 
 /// Largest number of channels of a file.
-inline constexpr int most_channels = 1024;
+inline constexpr int max_channels = 1024;
 
 /// Returns the names of a type's channels.
 std::vector<std::string> channels_of(const ValueType& type);
@@ -37,7 +37,7 @@ void to_frame(const ValueType& type, const void* value, double* frame);
 class TakeStreamWriter {
 public:
     /// `path` appears immediately and is readable while it grows. `columns` of frames of `frame_bytes` bytes make at
-    /// most `most_channels` channels; the first frame is that of activation `start`. Throws Error.
+    /// most `max_channels` channels; the first frame is that of activation `start`. Throws Error.
     TakeStreamWriter(const std::filesystem::path& path, Flicks period, std::int64_t start,
                      std::vector<io::FrameColumn> columns, std::size_t frame_bytes);
     ~TakeStreamWriter();

@@ -220,10 +220,10 @@ std::string TakeWriter::file_for(const std::string& group) {
 
 std::unique_ptr<io::Sink> TakeWriter::sink(const io::FrameLayout& layout, const run::GroupRuntime& group) {
     std::vector<TakeFile> files;
-    int channels = most_channels;
+    int channels = max_channels;
     for (const io::FrameColumn& column : layout.columns) {
         const auto wide = static_cast<int>(channels_of(*column.type).size());
-        if (channels + wide > most_channels) {
+        if (channels + wide > max_channels) {
             files.push_back({file_for(group.plan->name), {}});
             channels = 0;
         }

@@ -16,7 +16,7 @@ namespace {
 constexpr double box_width = 150, box_height = 46, column_gap = 90, row_gap = 26, lane_label = 190, lane_padding = 18,
                  margin = 16, title_height = 44;
 
-constexpr std::size_t most_shown = 40;  ///< characters of a name
+constexpr std::size_t max_shown = 40;  ///< characters of a name
 
 struct Place {
     double x = 0, y = 0;
@@ -153,12 +153,12 @@ private:
     /// The size at which a name stays within its box, or that of 40 characters.
     static double name_size(std::string_view name) {
         constexpr double character = 0.66;  // width of a bold one, of its height
-        const auto characters = static_cast<double>(std::clamp<std::size_t>(name.size(), 1, most_shown));
+        const auto characters = static_cast<double>(std::clamp<std::size_t>(name.size(), 1, max_shown));
         return std::min(12.0, (box_width - 12) / (character * characters));
     }
 
     static std::string shown(const std::string& name) {
-        return name.size() <= most_shown ? name : name.substr(0, most_shown - 1) + "…";
+        return name.size() <= max_shown ? name : name.substr(0, max_shown - 1) + "…";
     }
 
     /// The place of a wire among a node's ports, so that wires do not overlap.

@@ -11,15 +11,15 @@ namespace tactus::analyse {
 namespace {
 
 std::optional<double> response_of(const std::vector<ScheduledGroup>& groups, std::size_t at) {
-    constexpr int most_rounds = 1000;
+    constexpr int max_rounds = 1000;
     double response = groups[at].cost_s;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < max_rounds; ++round) {
         double next = groups[at].cost_s;
         for (std::size_t g = 0; g < at; ++g)
             // The tolerance keeps a response of exactly one period from counting twice.
             next += std::ceil(response / groups[g].period_s - 1e-9) * groups[g].cost_s;
         if (next <= response * (1.0 + 1e-12)) return response;
-        if (next > groups[at].period_s * most_rounds) return std::nullopt;
+        if (next > groups[at].period_s * max_rounds) return std::nullopt;
         response = next;
     }
     return std::nullopt;

@@ -21,14 +21,14 @@ bool has_signal_port(const ScheduleNode& node) {
 }
 
 Flicks parse_latency(const patch::PatchGroup& group, Flicks period) {
-    constexpr int most_ticks = 1'000'000;  // as of a delay; 64 MB for a wire of poses
+    constexpr int max_ticks = 1'000'000;  // as of a delay; 64 MB for a wire of poses
     const double flicks = parse_as(group.latency, "s") * static_cast<double>(flicks_per_second);
     if (!(flicks >= 1.0)) throw Error(fmt::format("a latency must be above zero, got '{}'", group.latency));
-    if (flicks > most_ticks * static_cast<double>(period))
+    if (flicks > max_ticks * static_cast<double>(period))
         throw Error(
             fmt::format("a latency may be {} ticks of its group at most, here {:g} s, got '{}'; wires keep the "
                         "values of all that time in memory",
-                        most_ticks, most_ticks * seconds(period), group.latency));
+                        max_ticks, max_ticks * seconds(period), group.latency));
     return std::llround(flicks);
 }
 

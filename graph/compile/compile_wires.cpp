@@ -203,14 +203,14 @@ private:
         const ScheduleGroup& group = plan_.groups[static_cast<std::size_t>(from.group)];
         const std::int64_t waiting = crosses() ? wire_latency(group, wire_) / group.period : wire_.delay;
         const Flicks reading = plan_.groups[static_cast<std::size_t>(node(wire_.to_node).group)].period;
-        if (reading / group.period > most_at_once)
+        if (reading / group.period > max_at_once)
             throw Error(fmt::format("'{}' runs once in {} ticks of '{}', and {} is the most for events",
-                                    source_.to_node, reading / group.period, source_.from_node, most_at_once));
-        if (waiting > most_waiting)
+                                    source_.to_node, reading / group.period, source_.from_node, max_at_once));
+        if (waiting > max_waiting)
             throw Error(
                 fmt::format("events would wait for {} ticks on this wire, and {} is the most; event_delay "
                             "delays them by any time",
-                            waiting, most_waiting));
+                            waiting, max_waiting));
         const Output* const output = from.outputs[static_cast<std::size_t>(wire_.from_output)].port;
         if (!context_.event_wires.emplace(output, &port, wire_.delay).second)
             throw Error(fmt::format("'{}.{}' is already wired to '{}.{}'; every event would come twice",
@@ -231,7 +231,7 @@ private:
                                     source_.to_node));
     }
 
-    static constexpr std::int64_t most_waiting = 10'000, most_at_once = 50'000;  // a tick's events take 776 bytes
+    static constexpr std::int64_t max_waiting = 10'000, max_at_once = 50'000;  // a tick's events take 776 bytes
 
     Schedule& plan_;
     WireContext& context_;

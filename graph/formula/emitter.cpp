@@ -30,7 +30,7 @@ Operand Emitter::emit(Operation operation, std::span<const Operand> operands, co
     pending_.push_back(instruction);
     height_ = lowest + 1;
     highest_ = std::max(highest_, height_);
-    if (variables_ + highest_ > Program::most_registers / 2) throw Error("the formula is too long");
+    if (variables_ + highest_ > Program::max_registers / 2) throw Error("the formula is too long");
     return {measure, {}, {}, lowest};
 }
 
@@ -40,7 +40,7 @@ std::size_t Emitter::constant_index(double value) {
     const auto same = [bits](double other) { return std::bit_cast<std::uint64_t>(other) == bits; };
     const auto found = std::ranges::find_if(constants_, same);
     if (found != constants_.end()) return static_cast<std::size_t>(found - constants_.begin());
-    if (constants_.size() >= Program::most_registers / 2) throw Error("the formula has too many constants");
+    if (constants_.size() >= Program::max_registers / 2) throw Error("the formula has too many constants");
     constants_.push_back(value);
     return constants_.size() - 1;
 }

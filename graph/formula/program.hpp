@@ -72,7 +72,7 @@ double apply(Operation operation, double a, double b, double c) noexcept;
 
 /// Instructions over registers: first the variables, then the constants, then what lies between.
 struct Program {
-    static constexpr std::size_t most_registers = 256;
+    static constexpr std::size_t max_registers = 256;
 
     std::size_t variables = 0;
     std::vector<double> constants;

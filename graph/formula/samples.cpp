@@ -78,11 +78,11 @@ constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
 
 [[gnu::always_inline]] inline void run_samples(const Program& program, double* registers, const float* const* inputs,
                                                float* out, int count) noexcept {
-    constexpr std::size_t block = Machine::block, most_near = 16;
+    constexpr std::size_t block = Machine::block, max_near = 16;
     // What a small formula computes lies on the stack, which is in the cache; its constants stay where they are.
-    alignas(64) double near[most_near * block];
+    alignas(64) double near[max_near * block];
     const std::size_t variables = program.variables, constants = variables + program.constants.size();
-    const bool is_small = program.registers - program.constants.size() <= most_near;
+    const bool is_small = program.registers - program.constants.size() <= max_near;
     const auto place = [&](std::size_t index) -> double* {
         if (!is_small || (index >= variables && index < constants)) return registers + index * block;
         return near + (index < variables ? index : index - program.constants.size()) * block;

@@ -143,7 +143,7 @@ struct Single::Writer {
 void Single::prepare(const Program& program) {
     Writer writer(program);
     writer.write();
-    const bool is_near = writer.words.size() <= most_near;
+    const bool is_near = writer.words.size() <= max_near;
     far_ = is_near ? std::vector<Word>{} : std::move(writer.words);
     if (is_near) std::ranges::copy(writer.words, near_);
     code_ = is_near ? near_ : far_.data();

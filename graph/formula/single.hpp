@@ -43,10 +43,10 @@ private:
     };
     struct Steps;  ///< the functions of all operations
     struct Writer;  ///< from instructions to words
-    static constexpr std::size_t most_near = 10;
+    static constexpr std::size_t max_near = 10;
 
     Word* code_ = near_;
-    Word near_[most_near] = {};  ///< a small formula lies in the object itself
+    Word near_[max_near] = {};  ///< a small formula lies in the object itself
     std::vector<Word> far_;
     std::vector<Use> uses_;
 };

@@ -27,7 +27,7 @@ struct FingerSample {
     std::uint64_t state = 0;  ///< bits, see above
 };
 
-inline constexpr std::size_t most_fingers = 2;
+inline constexpr std::size_t max_fingers = 2;
 
 /// What a device reports in one tick, in the device frame: m, rad, m/s, rad/s.
 struct DeviceSample {
@@ -39,7 +39,7 @@ struct DeviceSample {
     bool taken = false;  ///< set by the engine: ticks were late and the watchdog faded the force; ramp it in again
     bool sound_lost = false;  ///< set by the engine once when a sound card is lost: fade the force and ramp it in again
     bool late = false;  ///< set by a driver that received no pose of the hand in time; handled like a late tick
-    std::array<FingerSample, most_fingers> fingers{};  ///< of a gripper
+    std::array<FingerSample, max_fingers> fingers{};  ///< of a gripper
 };
 static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");
 
@@ -73,7 +73,7 @@ struct DeviceInfo {
 
 /// Commands for the motors of a gripper, and for the servo of a test rig that holds it, for the next period.
 struct MotorDrive {
-    std::array<double, most_fingers> speed{};  ///< m/s, positive towards closed
+    std::array<double, max_fingers> speed{};  ///< m/s, positive towards closed
     double cord = 0.0;  ///< m, position of the rig's cord at the end of the period
     bool free = false;  ///< true: low-friction mode, if the motor has one, in which the hand moves the finger
 };

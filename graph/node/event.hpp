@@ -23,14 +23,14 @@ enum class EventKind : std::uint8_t {
 
 /// One event. Its numbers are in SI units; the node that emits it documents their meaning.
 struct Event {
-    static constexpr std::size_t most_values = 4;
+    static constexpr std::size_t max_values = 4;
 
     Flicks time = 0;           ///< of the activation that emitted it
     std::uint32_t source = 0;  ///< `event_source` of the node that first emitted it
     EventKind kind = EventKind::instant;
     std::uint8_t count = 0;  ///< of `values`
     std::uint16_t unused = 0;
-    std::array<double, most_values> values{};
+    std::array<double, max_values> values{};
 
     bool operator==(const Event&) const = default;
 };
@@ -44,7 +44,7 @@ std::uint32_t event_source(std::string_view node);
 inline Event make_event(Flicks time, std::uint32_t source, EventKind kind, std::initializer_list<double> values) {
     Event event{time, source, kind, 0, 0, {}};
     for (const double v : values)
-        if (event.count < Event::most_values)
+        if (event.count < Event::max_values)
             event.values[event.count++] = v == v ? v : std::numeric_limits<double>::quiet_NaN();
     return event;
 }

@@ -61,9 +61,9 @@ private:
     [[noreturn]] void fail(std::size_t at, const std::string& message) const {
         SourceLocation where = where_;
         if (as_written_ && where.column > 0) where.column += static_cast<int>(at);
-        constexpr std::size_t most_shown = 80;
-        const bool is_long = text_.size() > most_shown;
-        throw Error(where, fmt::format("{}, not \"{}{}\"", message, text_.substr(0, most_shown), is_long ? "…" : ""));
+        constexpr std::size_t max_shown = 80;
+        const bool is_long = text_.size() > max_shown;
+        throw Error(where, fmt::format("{}, not \"{}{}\"", message, text_.substr(0, max_shown), is_long ? "…" : ""));
     }
 
     void end_of(const Word& word, std::string& node, std::string& port, bool may_be_asset) const {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // A chain of sixteen files, each of which uses the next twice, would give 65,536 nodes.
-constexpr std::size_t most_nodes = 100'000, most_deep = 16;
+constexpr std::size_t max_nodes = 100'000, max_deep = 16;
 
 template <class Item>
 std::unordered_set<std::string_view> name_set(const std::vector<Item>& items) {
@@ -58,9 +58,9 @@ public:
                 for (const PatchActuator& actuator : within->patch.actuators)
                     if (actuators.insert(actuator.name).second) patch.actuators.push_back(actuator);
             }
-            if (patch.nodes.size() > most_nodes && !has_stopped_) {
+            if (patch.nodes.size() > max_nodes && !has_stopped_) {
                 has_stopped_ = true;
-                problems_.add(nodes.front().where, fmt::format("more than {} nodes within each other", most_nodes));
+                problems_.add(nodes.front().where, fmt::format("more than {} nodes within each other", max_nodes));
             }
             if (has_stopped_) break;
         }
@@ -86,8 +86,8 @@ private:
             problems_.add(node.type_where, fmt::format("a patch within itself: {}{}", chain, path));
             return nullptr;
         }
-        if (deep_.size() > most_deep) {
-            problems_.add(node.type_where, fmt::format("more than {} patches within each other", most_deep));
+        if (deep_.size() > max_deep) {
+            problems_.add(node.type_where, fmt::format("more than {} patches within each other", max_deep));
             return nullptr;
         }
         if (const auto known = flat_.find(path); known != flat_.end()) return known->second.get();

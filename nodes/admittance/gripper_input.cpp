@@ -70,7 +70,7 @@ private:
     }
 
     DevicePort* port_ = nullptr;
-    std::array<FingerSample, most_fingers> last_{};
+    std::array<FingerSample, max_fingers> last_{};
     std::int64_t counter_ = -1;
     double unchanged_for_ = 0.0;
 };

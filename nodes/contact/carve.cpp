@@ -151,7 +151,7 @@ private:
         s.stroke = stroke;
         if (front.connected) s.tooth_pitch = saw::tooth_pitch;
         // A front brings its nodes; as many places as it can have.
-        s.blade_length = front.connected ? (carve::CutFront::most_nodes - 1) * s.tooth_pitch - s.stroke : length.value;
+        s.blade_length = front.connected ? (carve::CutFront::max_nodes - 1) * s.tooth_pitch - s.stroke : length.value;
         s.speed = speed;
         s.reference_force = reference_force;
         s.reference_rate = reference_rate;

@@ -87,10 +87,10 @@ struct SawBlade {
                 fmt::format("a stroke of {:.3g} mm is shorter than the tooth pitch of {:.3g} mm and would leave "
                             "ridges; lengthen the stroke",
                             stroke * 1e3, tooth_pitch * 1e3));
-        if ((shape.length + shape.stroke) / shape.pitch > carve::CutFront::most_nodes - 1)
+        if ((shape.length + shape.stroke) / shape.pitch > carve::CutFront::max_nodes - 1)
             setup.fail(fmt::format("{:.3g} mm of teeth {:.3g} mm apart are more than {}; shorten the blade",
                                    (shape.length + shape.stroke) * 1e3, shape.pitch * 1e3,
-                                   carve::CutFront::most_nodes - 1));
+                                   carve::CutFront::max_nodes - 1));
         if (shape.kerf <= shape.thickness)
             setup.fail("the kerf is not wider than the blade, which would bind; widen 'kerf' or thin the blade");
         if (shape.kind == saw::SawKind::sagittal && shape.height < 0.5 * (shape.length + shape.stroke) * 1.1)

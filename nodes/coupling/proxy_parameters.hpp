@@ -25,7 +25,7 @@ public:
     std::span<const coupling::ProxySurface> span() const noexcept { return std::span(list_).first(count_); }
 
 private:
-    std::array<coupling::ProxySurface, coupling::Scene::most_objects> list_;
+    std::array<coupling::ProxySurface, coupling::Scene::max_objects> list_;
     std::size_t count_ = 0;
 };
 

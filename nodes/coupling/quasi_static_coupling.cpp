@@ -84,7 +84,7 @@ struct QuasiStaticCoupling {
         report.set("coupling", "penetration_max_mm", deepest_ * 1e3);
         report.set("coupling", "iterations_mean", share(iterations_, ticks_));
         report.set("coupling", "evaluations_mean", share(evaluations_, ticks_));
-        report.set("coupling", "points_in_contact_max", most_points_);
+        report.set("coupling", "points_in_contact_max", max_points_);
         report.set("coupling", "in_contact", share(touching_, ticks_));
         report.set("coupling", "over_budget_ticks", reduced_);
     }
@@ -118,7 +118,7 @@ private:
         ++ticks_;
         if (!now.is_slowed) residuals_.add(now.residual);
         deepest_ = std::max(deepest_, now.contact.penetration);
-        most_points_ = std::max(most_points_, static_cast<double>(now.contact.in_contact));
+        max_points_ = std::max(max_points_, static_cast<double>(now.contact.in_contact));
         balanced_ += now.balanced ? 1.0 : 0.0;
         iterations_ += now.iterations;
         evaluations_ += now.evaluations;
@@ -143,7 +143,7 @@ private:
     Wrench last_;
     SizeCounts residuals_;  // of the ticks that `slip` did not end early
     std::uint64_t ticks_ = 0;
-    double deepest_ = 0.0, balanced_ = 0.0, iterations_ = 0.0, evaluations_ = 0.0, touching_ = 0.0, most_points_ = 0.0,
+    double deepest_ = 0.0, balanced_ = 0.0, iterations_ = 0.0, evaluations_ = 0.0, touching_ = 0.0, max_points_ = 0.0,
            reduced_ = 0.0;
 };
 

@@ -82,7 +82,7 @@ struct SnapToFit {
         report.set("snap", "painted_points",
                    energy_ ? static_cast<double>(moving_paint_->position.size() + fixed_paint_->position.size()) : 0.0);
         report.set("snap", "score", score_);
-        report.set("snap", "pull_max_N", most_pull_);
+        report.set("snap", "pull_max_N", max_pull_);
         report.set("snap", "residual_p99_N", residuals_.quantile(0.99));
         report.set("snap", "penetration_max_mm", deepest_ * 1e3);
     }
@@ -143,7 +143,7 @@ private:
         last_ = now.wrench;
         if (!now.is_slowed) residuals_.add(now.residual);
         deepest_ = std::max(deepest_, now.contact.penetration);
-        most_pull_ = std::max(most_pull_, drawing);
+        max_pull_ = std::max(max_pull_, drawing);
         if (pulls && ticks_++ % score_every == 0) {
             energy_->law.stride = std::max<std::size_t>(1, moving_paint_->position.size() / 300);
             score_ = energy_
@@ -184,7 +184,7 @@ private:
     Wrench last_;
     SizeCounts residuals_;
     Lead lead_;
-    double scale_ = 2e-3, score_ = 0.0, deepest_ = 0.0, most_pull_ = 0.0;
+    double scale_ = 2e-3, score_ = 0.0, deepest_ = 0.0, max_pull_ = 0.0;
     std::uint64_t ticks_ = 0;
 };
 

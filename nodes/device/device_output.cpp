@@ -57,7 +57,7 @@ struct DeviceOutput {
                 device.where,
                 fmt::format("the device '{}' answers after {:.3g} ms, longer than {} ticks of {:.4g} Hz, within "
                             "which energy_cap bounds the energy; lower the rate of '{}'",
-                            port_->info.name, cap.delay_s * 1e3, control::EnergyCap::most_delay, 1.0 / cap.period_s,
+                            port_->info.name, cap.delay_s * 1e3, control::EnergyCap::max_delay, 1.0 / cap.period_s,
                             setup.name));
         cap_.prepare(cap);
         is_new_ = true;
@@ -101,7 +101,7 @@ struct DeviceOutput {
         report.set("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
         report.set("contact", "limited_ticks", static_cast<double>(s.limited));
         if (!port_->info.actuates_torque) {
-            report.set("force", "torque_dropped_max_Nm", most_dropped_);
+            report.set("force", "torque_dropped_max_Nm", max_dropped_);
             report.set("force", "torque_dropped_ticks", static_cast<double>(ticks_dropped_));
         }
         const control::EnergyCapStatistics& e = cap_.statistics();
@@ -110,10 +110,10 @@ struct DeviceOutput {
                                : energy_cap               ? "on"
                                                           : "off"));
         report.set("force", "energy_capped_ticks", static_cast<double>(capped_ticks_));
-        report.set("force", "energy_capped_max_N", most_capped_);
-        report.set("force", "energy_stored_max_J", e.most_stored);
-        report.set("force", "energy_returned_max_J", e.most_returned);
-        report.set("force", "granted_power_max_W", most_granted_);
+        report.set("force", "energy_capped_max_N", max_capped_);
+        report.set("force", "energy_stored_max_J", e.max_stored);
+        report.set("force", "energy_returned_max_J", e.max_returned);
+        report.set("force", "granted_power_max_W", max_granted_);
         report.set("force", "granted_J", e.granted);
         report.set("force", "engaged_ticks", static_cast<double>(engaged_ticks_));
         // Forces come on only after the patch has asked for almost none.
@@ -194,15 +194,15 @@ private:
     /// Observes also while it is off, so that the report says what the hand was given.
     Wrench capped(const Wrench& limited, bool is_usable, double elapsed_s) noexcept {
         if (port_->info.without_motors) return limited;
-        const double watts = granted.connected && granted.get() > 0.0 ? std::min(granted.get(), most_granted_W) : 0.0;
-        most_granted_ = std::max(most_granted_, watts);
+        const double watts = granted.connected && granted.get() > 0.0 ? std::min(granted.get(), max_granted_W) : 0.0;
+        max_granted_ = std::max(max_granted_, watts);
         const Pose nowhere{{}, {0.0, 0.0, 0.0, 0.0}};
         const DeviceSample& s = port_->sample;
         const Wrench out = cap_.tick(limited, port_->wrench, is_usable ? s.pose : nowhere, elapsed_s, watts, s.taken);
         if (!energy_cap) return limited;
         const double removed = glm::length(limited.force - out.force);
         if (removed > 0.0 || limited.torque != out.torque) ++capped_ticks_;
-        most_capped_ = std::max(most_capped_, removed);
+        max_capped_ = std::max(max_capped_, removed);
         return out;
     }
 
@@ -215,7 +215,7 @@ private:
         asked.torque = Vec3(0.0);
         if (!(torque > 0.0)) return asked;
         torque_dropped = true;
-        most_dropped_ = std::max(most_dropped_, torque);
+        max_dropped_ = std::max(max_dropped_, torque);
         ++ticks_dropped_;
         return asked;
     }
@@ -297,13 +297,13 @@ private:
         return limiter_.is_ramping() ? ForceState::ramps : ForceState::on;
     }
 
-    static constexpr double most_granted_W = 50.0;
+    static constexpr double max_granted_W = 50.0;
     DevicePort* port_ = nullptr;
     control::ForceLimiter limiter_;
     control::EnergyCap cap_;
-    double most_granted_ = 0.0, most_capped_ = 0.0;
+    double max_granted_ = 0.0, max_capped_ = 0.0;
     std::int64_t capped_ticks_ = 0;
-    double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
+    double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, max_dropped_ = 0.0;
     double felt_ = 0.0, off_s_ = 0.0, off_from_ = 0.0, off_until_ = 0.0, asked_ = 0.0;
     std::int64_t asked_ticks_ = 0;
     std::int64_t counter_ = 0, still_ticks_ = 0, faults_ = 0, returns_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;

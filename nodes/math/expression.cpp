@@ -59,7 +59,7 @@ public:
     void prepare(const Setup& setup) {
         const std::vector<formula::Variable> names = read_text(setup, inputs, formula::parse_variables);
         count_ = names.size();
-        if (count_ == 0 || count_ > most_inputs) setup.fail("an expression has one to six inputs; 'inputs' names them");
+        if (count_ == 0 || count_ > max_inputs) setup.fail("an expression has one to six inputs; 'inputs' names them");
         const std::vector<formula::Constant> values = read_text(setup, constants, formula::parse_constants);
         for (const auto& value : values)
             if (std::ranges::find(names, value.name, &formula::Variable::name) != names.end())
@@ -114,7 +114,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t most_inputs = 6;
+    static constexpr std::size_t max_inputs = 6;
 
     /// NaN stays NaN.
     template <class Value>
@@ -170,7 +170,7 @@ private:
     double run_one() noexcept {
         if (uses_ > 3) {
             const AnyIn* const others[] = {&in3, &in4, &in5, &in6};
-            for (std::size_t i = 2; i < most_inputs; ++i)
+            for (std::size_t i = 2; i < max_inputs; ++i)
                 if ((uses_ >> i & 1) != 0) single_.put(i, read<Value>(*others[i - 2], i));
         }
         return single_.run((uses_ & 1) != 0 ? read<Value>(in1, 0) : 0.0, (uses_ & 2) != 0 ? read<Value>(in2, 1) : 0.0);
@@ -185,8 +185,8 @@ private:
 
     void process_samples(const Tick& tick) noexcept {
         const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
-        const float* places[most_inputs];
-        float clamped[most_inputs][formula::Machine::block];
+        const float* places[max_inputs];
+        float clamped[max_inputs][formula::Machine::block];
         for (int from = 0; from < tick.frames; from += formula::Machine::block) {
             const int frames = std::min(tick.frames - from, formula::Machine::block);
             for (std::size_t i = 0; i < count_; ++i) {
@@ -201,8 +201,8 @@ private:
     }
 
     formula::Machine machine_;
-    formula::Interval ranges_[most_inputs] = {};
-    SampleRange sample_ranges_[most_inputs] = {};
+    formula::Interval ranges_[max_inputs] = {};
+    SampleRange sample_ranges_[max_inputs] = {};
     std::size_t count_ = 0;
 };
 

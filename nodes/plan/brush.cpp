@@ -46,7 +46,7 @@ struct Brush {
         if (start_clean) contact::remove_paint(points);
         if (!label.value.empty() && !segmentation::is_label_name(label.value))
             setup.fail("'label' is one line of 1 to 200 bytes of UTF-8");
-        strokes_ = std::make_unique<segmentation::StrokeRecorder>(most_strokes, most_points);
+        strokes_ = std::make_unique<segmentation::StrokeRecorder>(max_strokes, max_points);
         brush_ = std::make_unique<fit::SurfaceBrush>(std::move(points));
         publish(fit::SurfaceBrush::farthest);
     }
@@ -95,7 +95,7 @@ private:
     }
 
     // Ten minutes of a hand that moves 100 mm/s with a brush of 1.5 mm.
-    static constexpr std::size_t most_strokes = 10'000, most_points = 160'000;
+    static constexpr std::size_t max_strokes = 10'000, max_points = 160'000;
 
     std::unique_ptr<fit::SurfaceBrush> brush_;
     std::unique_ptr<segmentation::StrokeRecorder> strokes_;

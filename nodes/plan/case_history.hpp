@@ -16,7 +16,7 @@ namespace tactus::nodes {
 /// Allocates in the constructor only; no other function allocates, waits or throws.
 class CaseHistory {
 public:
-    static constexpr std::size_t most_ways = 32;  ///< alternatives
+    static constexpr std::size_t max_ways = 32;  ///< alternatives
 
     explicit CaseHistory(const plan::CasePlan& plan);
 
@@ -27,7 +27,7 @@ public:
     /// Switches to an alternative; the number after the last one starts a new alternative at the current state. Returns
     /// false, without a change, if the number is invalid or is the current one.
     bool go_to(std::size_t alternative, fit::Arrangement& now) noexcept;
-    /// Removes an alternative; a negative number restores the one removed last, of at most plan::most_dropped. Returns
+    /// Removes an alternative; a negative number restores the one removed last, of at most plan::max_dropped. Returns
     /// false if that is not possible.
     bool drop(double number) noexcept;
 

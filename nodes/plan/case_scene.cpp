@@ -73,14 +73,14 @@ struct CaseScene {
                "place of the body that join puts together with it; -1: the partner of the fit"};
 
     void prepare(const Setup& setup) {
-        if (plan->bones.size() > tactus::coupling::Scene::most_objects)
+        if (plan->bones.size() > tactus::coupling::Scene::max_objects)
             setup.fail("plan '" + plan.name +
                        "' has more than 16 fragments; hiding does not help: plan the case in parts");
         name_ = setup.name;
         for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_, &no_way_}) notice->attach(setup);
         bodies_ = std::make_unique<CaseBodies>(plan->bones);
         now_ = std::make_unique<fit::Arrangement>(plan::state_of(plan->plan).arrangement);
-        if (plan->plan.alternatives.size() > CaseHistory::most_ways)
+        if (plan->plan.alternatives.size() > CaseHistory::max_ways)
             setup.fail("plan '" + plan.name +
                        "' has more than 32 alternatives; remove some: 'tactus plan alternative'");
         history_ = std::make_unique<CaseHistory>(plan->plan);

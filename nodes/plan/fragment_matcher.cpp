@@ -55,7 +55,7 @@ struct FragmentMatcher {
         std::vector<fit::FragmentSurface> surfaces;
         for (const bone::Bone& bone : plan->bones) surfaces.push_back({bone.points, &bone.distance});
         fit::MatcherSettings settings;
-        settings.most_points = static_cast<std::size_t>(points);
+        settings.max_points = static_cast<std::size_t>(points);
         try {
             matcher_ = std::make_unique<tactus::fit::FragmentMatcher>(surfaces, settings);
         } catch (const Error& error) {
@@ -164,7 +164,7 @@ private:
             const fit::PlacedBone mine = placed(m, motion * poses_[m]);
             for (std::size_t n = 0; n < scene->count; ++n)
                 if (stands_[n] &&
-                    fit::lie_in_each_other(mine, placed(n, poses_[n]), matcher_->settings.fit.most_penetration))
+                    fit::lie_in_each_other(mine, placed(n, poses_[n]), matcher_->settings.fit.max_penetration))
                     return true;
         }
         return false;
@@ -202,8 +202,8 @@ private:
     }
 
     std::unique_ptr<tactus::fit::FragmentMatcher> matcher_;
-    std::array<Pose, tactus::coupling::Scene::most_objects> poses_;
-    std::array<char, tactus::coupling::Scene::most_objects> stands_{};
+    std::array<Pose, tactus::coupling::Scene::max_objects> poses_;
+    std::array<char, tactus::coupling::Scene::max_objects> stands_{};
     std::string name_;
     double looks_ = 0.0, fits_ = 0.0, lonely_ = 0.0;
     Notice lonely_notice_{nothing_stands};

@@ -15,7 +15,7 @@ struct Probe {
 
     void prepare(const Setup& setup) {
         if (!in.type) setup.fail("probe needs a wire to 'in'");
-        if (in.type->columns.empty() || in.type->columns.size() > most_columns)
+        if (in.type->columns.empty() || in.type->columns.size() > max_columns)
             setup.fail("probe cannot watch a " + std::string(in.type->name) + "; it has no columns of numbers");
         name_ = setup.name;
     }
@@ -23,7 +23,7 @@ struct Probe {
     void process(const Tick& tick) noexcept {
         const int count = in.type == &value::signal ? tick.frames : 1;
         for (int i = 0; i < count; ++i) {
-            std::array<double, most_columns> values{};
+            std::array<double, max_columns> values{};
             in.type->to_columns(in.data + i * in.stride, values.data());
             watch(values);
         }
@@ -49,14 +49,14 @@ struct Probe {
     }
 
 private:
-    static constexpr std::size_t most_columns = 7;
+    static constexpr std::size_t max_columns = 7;
     struct Column {
         double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
         double sum = 0.0, last = 0.0;
         std::int64_t count = 0, not_finite = 0;
     };
 
-    void watch(const std::array<double, most_columns>& values) noexcept {
+    void watch(const std::array<double, max_columns>& values) noexcept {
         for (std::size_t c = 0; c < in.type->columns.size(); ++c) {
             Column& column = columns_[c];
             if (!std::isfinite(values[c])) {
@@ -77,7 +77,7 @@ private:
         else report.set(name_, key, values);
     }
 
-    std::array<Column, most_columns> columns_;
+    std::array<Column, max_columns> columns_;
     std::string name_;
 };
 

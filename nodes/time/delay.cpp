@@ -23,7 +23,7 @@ struct Delay {
     void prepare(const Setup& setup) {
         size_ = in.type->size;
         ticks_ = static_cast<std::size_t>(std::llround(time * setup.rate()));
-        if (ticks_ * size_ > most_bytes)
+        if (ticks_ * size_ > max_bytes)
             setup.fail("a delay holds at most 64 MB; make 'time' shorter or the group slower");
         kept_.assign(ticks_ * size_, std::byte{});
         for (std::size_t i = 0; i < ticks_; ++i) in.type->make_default(kept_.data() + i * size_);
@@ -49,7 +49,7 @@ struct Delay {
     }
 
 private:
-    static constexpr std::size_t most_bytes = 64'000'000;
+    static constexpr std::size_t max_bytes = 64'000'000;
     std::vector<std::byte> kept_;
     std::size_t size_ = 8, ticks_ = 0, at_ = 0;
 };

@@ -74,7 +74,7 @@ struct Task {
         touch_ = {};
         touched_ = 0;
         over_limit_ = deepest_ = worst_distance_ = worst_angle_ = 0.0;
-        least_clearance_ = std::numeric_limits<double>::infinity();
+        min_clearance_ = std::numeric_limits<double>::infinity();
         stream_ = nullptr;
         if (!file.value.empty())
             stream_ = &setup.host->record({file.value, "", &attempt_row_type, setup.period}, setup.where);
@@ -139,7 +139,7 @@ struct Task {
         if (stream_) stream_->write(tick.index, &row_, static_cast<std::size_t>(tick.frames), 0);
         elapsed = static_cast<double>(std::max<std::int64_t>(0, touched_ - 1)) * step;
         over_time = limits.time && elapsed.get() > *limits.time;
-        least_clearance_ = std::min(least_clearance_, least);
+        min_clearance_ = std::min(min_clearance_, least);
         deepest_ = std::max(deepest_, now.depth);
         if (!touches) return;
         worst_distance_ = std::max(worst_distance_, std::abs(now.distance));
@@ -158,7 +158,7 @@ struct Task {
         report.set("task", "largest_distance_mm", worst_distance_ * 1e3);
         report.set("task", "largest_angle_deg", worst_angle_ * 57.29577951308232);
         report.set("task", "over_limit_Ns", over_limit_);
-        if (!task_->spared.empty()) report.set("task", "closest_mm", least_clearance_ * 1e3);
+        if (!task_->spared.empty()) report.set("task", "closest_mm", min_clearance_ * 1e3);
     }
 
 private:
@@ -168,7 +168,7 @@ private:
     training::AttemptRow row_;
     Pose at_;
     std::int64_t touched_ = 0;  // activations since the first touch
-    double over_limit_ = 0.0, deepest_ = 0.0, worst_distance_ = 0.0, worst_angle_ = 0.0, least_clearance_ = 0.0;
+    double over_limit_ = 0.0, deepest_ = 0.0, worst_distance_ = 0.0, worst_angle_ = 0.0, min_clearance_ = 0.0;
 };
 
 TACTUS_NODE(Task, pose, force, contact, removed, heat, distance, angle, depth_left, clearance, elapsed, off_plan,

@@ -22,7 +22,7 @@ struct Comb {
 
     void prepare(const Setup& setup) {
         const auto samples = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(time * setup.rate())));
-        if (samples > most_samples) setup.fail("a comb holds at most 4 million samples; make 'time' shorter");
+        if (samples > max_samples) setup.fail("a comb holds at most 4 million samples; make 'time' shorter");
         past_.assign(samples, {});
         at_ = 0;
     }
@@ -39,7 +39,7 @@ struct Comb {
     }
 
 private:
-    static constexpr std::size_t most_samples = 4'000'000;
+    static constexpr std::size_t max_samples = 4'000'000;
     // What rings on for seconds must not overflow.
     static constexpr double largest = 1e30;
     struct Past {

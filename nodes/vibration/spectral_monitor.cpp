@@ -26,7 +26,7 @@ struct SpectralMonitor {
 
     void prepare(const Setup& setup) {
         const double reference_rate = rate_of(reference.period), output_rate = rate_of(output.period);
-        if (!(std::min(reference_rate, output_rate) >= least_rate))
+        if (!(std::min(reference_rate, output_rate) >= min_rate))
             setup.fail("the signals' rate is below 223 Hz, too low to compare vibrations; use a faster group");
         comparison_ = signal::LiveComparison(reference_rate, output_rate, memory);
         name_ = setup.name;
@@ -52,7 +52,7 @@ struct SpectralMonitor {
     }
 
 private:
-    static constexpr double least_rate = 223.0;  // Hz
+    static constexpr double min_rate = 223.0;  // Hz
 
     void publish() noexcept {
         distance = scores_.lsd_db;

@@ -71,7 +71,7 @@ void coupled_fragments(benchmark::State& state) {
     state.counters["balanced"] = balanced / frames;
 }
 BENCHMARK(coupled_fragments)
-    ->ArgNames({"spacing_um", "most_iterations"})
+    ->ArgNames({"spacing_um", "max_iterations"})
     ->Args({420, 4})
     ->Args({130, 4})
     ->Iterations(4000);

@@ -64,9 +64,9 @@ public:
         ::kill(process_, number);
     }
     /// How it ended, in the words of waitpid; −1: it did not, and was killed.
-    int wait(int most_s = longest_s) {
+    int wait(int max_s = longest_s) {
         int status = 0;
-        const auto until = Clock::now() + std::chrono::seconds(most_s);
+        const auto until = Clock::now() + std::chrono::seconds(max_s);
         while (waitpid(process_, &status, WNOHANG) == 0) {
             if (Clock::now() > until) {
                 signal(SIGKILL);

@@ -99,20 +99,20 @@ double force_at(const Outcome& o, std::size_t i) { return glm::length(o.given[i]
 
 /// Every force is finite, within its limit, and no further from the one before than slew or fade allow.
 void check_bounds(const Outcome& o) {
-    double most = 0.0, most_torque = 0.0, step = 0.0, torque_step = 0.0;
+    double most = 0.0, peak_torque = 0.0, step = 0.0, torque_step = 0.0;
     bool finite = true;
     for (std::size_t i = 0; i < o.given.size(); ++i) {
         const Wrench& w = o.given[i].wrench;
         finite = finite && is_finite(w);
         most = std::max(most, glm::length(w.force));
-        most_torque = std::max(most_torque, glm::length(w.torque));
+        peak_torque = std::max(peak_torque, glm::length(w.torque));
         const Wrench before = i > 0 ? o.given[i - 1].wrench : Wrench{};
         step = std::max(step, glm::length(w.force - before.force));
         torque_step = std::max(torque_step, glm::length(w.torque - before.torque));
     }
     CHECK(finite);
     CHECK(most <= max_force * (1.0 + 1e-12));
-    CHECK(most_torque <= max_torque * (1.0 + 1e-12));
+    CHECK(peak_torque <= max_torque * (1.0 + 1e-12));
     CHECK(step <= slew * (1.0 + 1e-9));
     CHECK(torque_step <= torque_slew * (1.0 + 1e-9));
 }

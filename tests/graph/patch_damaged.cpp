@@ -63,7 +63,7 @@ TEST_CASE("dots in texts and comments are not nesting") {
     CHECK_FALSE(file::overlong_key(repeated("x.y = 1.5\n", 1000)));
     CHECK_FALSE(file::overlong_key("a = \"" + dots));
     CHECK_FALSE(file::overlong_key("a = \"\\"));
-    CHECK(file::overlong_key("a = \"x\"\nb" + dots) == std::size_t{9 + file::most_dots_in_key});
+    CHECK(file::overlong_key("a = \"x\"\nb" + dots) == std::size_t{9 + file::max_dots_in_key});
 }
 
 TEST_CASE("a megabyte of text is read or refused, with a short message") {

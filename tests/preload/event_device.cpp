@@ -23,8 +23,8 @@
 namespace {
 
 constexpr const char *device = "/dev/input/event7", *folder = "/dev/input";
-constexpr int most_files = 4096;
-std::atomic<bool> is_ours[most_files];
+constexpr int max_files = 4096;
+std::atomic<bool> is_ours[max_files];
 std::atomic<int> next_effect{0}, largest{0};
 
 bool is_wheel() {
@@ -32,7 +32,7 @@ bool is_wheel() {
     return kind && std::strcmp(kind, "wheel") == 0;
 }
 
-bool knows(int file) { return file >= 0 && file < most_files && is_ours[file]; }
+bool knows(int file) { return file >= 0 && file < max_files && is_ours[file]; }
 
 template <class Function>
 Function* real(const char* name) {
@@ -49,7 +49,7 @@ int position() { return static_cast<int>(32767.5 + (is_wheel() ? 1000.0 : 20000.
 
 int open_device() {
     const int file = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    if (file < 0 || file >= most_files) return -1;
+    if (file < 0 || file >= max_files) return -1;
     const itimerspec every{{0, 2'000'000}, {0, 2'000'000}};
     ::timerfd_settime(file, 0, &every, nullptr);
     is_ours[file] = true;
@@ -141,7 +141,7 @@ DIR* opendir(const char* path) {
 }
 
 int close(int file) {
-    if (file >= 0 && file < most_files) is_ours[file] = false;
+    if (file >= 0 && file < max_files) is_ours[file] = false;
     return real<int(int)>("close")(file);
 }
 

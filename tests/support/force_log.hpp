@@ -59,7 +59,7 @@ public:
             if (entry.force != 0.0) at = entry.at_ns;
         return at;
     }
-    double most_after(std::int64_t from_ns) const {
+    double max_after(std::int64_t from_ns) const {
         double force = 0.0;
         for (const Entry& entry : entries())
             if (entry.at_ns >= from_ns) force = std::max(force, entry.force);

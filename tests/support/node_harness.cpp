@@ -15,7 +15,7 @@ namespace {
 
 /// Activations for which a value or a parameter stays the same: calls are cut there, as the engine does.
 constexpr std::int64_t hold = 24;
-constexpr int most_in_batch = 20;
+constexpr int max_in_batch = 20;
 
 const NodeType& find_type(std::string_view name) {
     for (const NodeType* type : nodes::catalogue())
@@ -205,13 +205,13 @@ void NodeHarness::prepare() {
     for (InputSlot& input : members_->inputs) {
         Input& port = *input.port;
         const bool is_batch = port.kind == InputKind::batch;
-        input.buffer.assign(port.type->size * (is_batch ? most_in_batch : frames), std::byte{});
+        input.buffer.assign(port.type->size * (is_batch ? max_in_batch : frames), std::byte{});
         if (port.type == &value::pose) {
             const Pose rest;
             for (std::size_t at = 0; at < input.buffer.size(); at += sizeof(Pose))
                 std::memcpy(input.buffer.data() + at, &rest, sizeof(Pose));
         }
-        input.times.assign(is_batch ? most_in_batch : 0, 0);
+        input.times.assign(is_batch ? max_in_batch : 0, 0);
         const Random random{mix(++salt)};
         if (!input.function)
             input.function = [this, random, type = port.type](std::int64_t k, void* out) {
@@ -221,7 +221,7 @@ void NodeHarness::prepare() {
         port.data = input.buffer.data();
         port.stride = is_stream && port.connected ? static_cast<std::ptrdiff_t>(port.type->size) : 0;
         port.times = input.times.data();
-        port.period = is_batch ? options_.period / most_in_batch : options_.period;
+        port.period = is_batch ? options_.period / max_in_batch : options_.period;
     }
     for (OutputSlot& output : members_->outputs) {
         Output& port = *output.port;
@@ -250,11 +250,11 @@ void NodeHarness::fill_inputs(std::int64_t first, int frames) {
         const std::size_t size = port.type->size;
         if (port.kind == InputKind::batch) {
             port.count = static_cast<int>(Random{options_.seed ^ size}.bits(static_cast<std::uint64_t>(first)) %
-                                          (most_in_batch + 1));
+                                          (max_in_batch + 1));
             for (int i = 0; i < port.count; ++i) {
                 const auto at = static_cast<std::size_t>(i);
-                input.function(first * most_in_batch + i, input.buffer.data() + at * size);
-                input.times[at] = first * options_.period + options_.period * i / most_in_batch;
+                input.function(first * max_in_batch + i, input.buffer.data() + at * size);
+                input.times[at] = first * options_.period + options_.period * i / max_in_batch;
             }
         } else if (port.stride != 0) {
             for (int i = 0; i < frames; ++i)

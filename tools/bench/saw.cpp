@@ -101,20 +101,20 @@ Comparison compare() {
              "no number published"});
     }
     // Yu 2023: the feed is given, the force is measured.
-    double least = HUGE_VAL, least_at = 0.0, at_yu = 0.0;
+    double least = HUGE_VAL, min_at = 0.0, at_yu = 0.0;
     for (const double rate : {120.0, 150.0, 180.0, 205.0, 228.0, 250.0, 285.0}) {
         const double thrust =
             analysis::run_saw_trial({.feed = saw::yu_2023::feed, .blade_rate = rate, .settle = 3.0}).thrust;
         made.figure.thrust.push_back({rate, thrust});
         if (thrust < least) {
             least = thrust;
-            least_at = rate;
+            min_at = rate;
         }
         if (rate == 228.0) at_yu = thrust;
     }
     made.rows.push_back({"predicted: rate of least force at 0.67 mm/s, 120 to 285 Hz (Yu 2023)", "228 Hz",
-                         fmt::format("{:.0f} Hz ({:.1f} N; {:.1f} N at 228 Hz)", least_at, least, at_yu),
-                         fmt::format("{:+.0f} %, no minimum inside", 100.0 * (least_at / saw::yu_2023::rate - 1.0))});
+                         fmt::format("{:.0f} Hz ({:.1f} N; {:.1f} N at 228 Hz)", min_at, least, at_yu),
+                         fmt::format("{:+.0f} %, no minimum inside", 100.0 * (min_at / saw::yu_2023::rate - 1.0))});
     for (const auto& [cycles, feed, wet] : {std::tuple{10e3, 30.0, false}, std::tuple{10e3, 10.0, false},
                                             std::tuple{18e3, 30.0, false}, std::tuple{18e3, 20.0, true}})
         made.rows.push_back({fmt::format("predicted: warming, sagittal, {:.0f} cpm, {:.0f} mm/min{}", cycles, feed,

@@ -15,7 +15,7 @@ namespace tactus::bench {
 
 namespace {
 
-constexpr int most_iterations = 100, annealed_iterations = 60;
+constexpr int max_iterations = 100, annealed_iterations = 60;
 constexpr double trimmed_share = 0.8, widest = 8e-3, finest = 0.8e-3;
 constexpr double flatness = 1e-3;  // variance along the normal relative to the plane, as in GICP
 
@@ -55,7 +55,7 @@ Pose run_icp(const fit::FitSurface& moving, const IcpTarget& target, const Pose&
     const fit::FitSurface& fixed = target.surface();
     Pose pose = start;
     std::vector<Match> matches(moving.position.size());
-    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         const Mat3 turn = glm::mat3_cast(pose.orientation);
         for (std::size_t i = 0; i < matches.size(); ++i) {
             const Vec3 x = pose.position + turn * moving.position[i];

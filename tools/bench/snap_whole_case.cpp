@@ -16,7 +16,7 @@ namespace tactus::bench {
 
 namespace {
 
-constexpr double most_error = 0.3e-3, most_angle = 0.5;
+constexpr double max_error = 0.3e-3, max_angle = 0.5;
 
 void put_together_once(const library::BrokenMandible& broken, WholeCaseResult& result) {
     std::vector<fit::FragmentSurface> surfaces;
@@ -64,7 +64,7 @@ void put_together_once(const library::BrokenMandible& broken, WholeCaseResult& r
         result.gap.push_back(last[n].quality.gap);
         const bool fits = last[n].verdict == fit::FitVerdict::fit;
         result.fitted += fits;
-        result.within += fits && error < most_error && angle < most_angle;
+        result.within += fits && error < max_error && angle < max_angle;
     }
 }
 

@@ -14,7 +14,7 @@ inline const Vec3 steel{0.62, 0.65, 0.70}, force_colour{0.86, 0.20, 0.16}, hand_
     vein_colour{0.36, 0.46, 0.80}, strained_colour{0.30, 0.02, 0.12}, compared_colour{0.10, 0.40, 0.90},
     heat_colour{0.98, 0.62, 0.02};
 // One colour per scene slot, distinguishable with most kinds of colour blindness.
-inline const std::array<Vec3, coupling::Scene::most_objects> group_colours{{{0.88, 0.83, 0.70},
+inline const std::array<Vec3, coupling::Scene::max_objects> group_colours{{{0.88, 0.83, 0.70},
                                                                             {0.42, 0.62, 0.80},
                                                                             {0.55, 0.72, 0.45},
                                                                             {0.83, 0.62, 0.45},

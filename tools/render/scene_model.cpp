@@ -179,8 +179,8 @@ display::Picture& SceneModel::update() {
     notes_.vertices.clear();
     notes_.triangles.clear();
     remeshed_ = 0;
-    constexpr std::chrono::milliseconds most_work{10};
-    until_ = std::chrono::steady_clock::now() + most_work;
+    constexpr std::chrono::milliseconds max_work{10};
+    until_ = std::chrono::steady_clock::now() + max_work;
     if (making_.is_ready()) try {
             take_body(making_.take());
         } catch (const std::exception& error) {
@@ -212,8 +212,8 @@ display::Picture& SceneModel::update() {
     show(notes_mesh_, {}, display::bounds_of(notes_), 1.0, false, !outline_.handles.empty());
     picture_.meshes.back().shines_through = true;
     // What never comes must not let the bounds follow the tools for ever.
-    constexpr int most_waits = 200;
-    is_fitting_ = is_fitting_ && (bounds_.empty() || is_making_ || (is_waiting_ && ++waits_ < most_waits));
+    constexpr int max_waits = 200;
+    is_fitting_ = is_fitting_ && (bounds_.empty() || is_making_ || (is_waiting_ && ++waits_ < max_waits));
     if (shows_grey_) legend_.scales.push_back(section_scale());
     if (deepest_ > 0.0)
         legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});

@@ -21,7 +21,7 @@ using namespace scene_colours;
 
 namespace {
 
-constexpr std::uint64_t most_in_legend = 6;
+constexpr std::uint64_t max_in_legend = 6;
 
 }  // namespace
 
@@ -199,7 +199,7 @@ void SceneModel::show_bodies() {
             part.is_held = held != nullptr;
             if (!is_shown) continue;
             // A long legend would cover the scene.
-            if (held || seen->value.count <= most_in_legend)
+            if (held || seen->value.count <= max_in_legend)
                 legend_.entries.push_back({name + (held ? ", held" : ""), colour});
             if (!is_valid(pose)) {
                 legend_.warnings.push_back(fmt::format("{} has no valid pose: not drawn", name));

@@ -38,7 +38,7 @@ void add_vertex(geometry::SurfacePatch& patch, const Vec3& position, const Vec3&
 
 /// An open tube of rings that are carried along without turning. Empty when a point is no number.
 void add_tube(geometry::SurfacePatch& patch, const rope::RopeShape& shape) {
-    const std::size_t count = std::min<std::size_t>(shape.count, rope::RopeShape::most_points);
+    const std::size_t count = std::min<std::size_t>(shape.count, rope::RopeShape::max_points);
     for (std::size_t n = 0; n < count; ++n)
         if (!is_finite(point_of(shape, n))) return;
     if (count < 2) return;

@@ -20,7 +20,7 @@ namespace tactus::run {
 namespace {
 
 constexpr std::size_t longest_line = 4096;
-constexpr std::size_t most_callers = 16;
+constexpr std::size_t max_callers = 16;
 
 struct Descriptor {
     int number;
@@ -71,7 +71,7 @@ bool ControlSocket::listen_to(Caller& caller, const std::function<std::string(co
 }
 
 void ControlSocket::serve(const std::function<std::string(const std::string&)>& answer) {
-    for (int caller; callers_.size() < most_callers &&
+    for (int caller; callers_.size() < max_callers &&
                      (caller = ::accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)) >= 0;)
         callers_.push_back({caller, {}});
     std::erase_if(callers_, [&](Caller& caller) {

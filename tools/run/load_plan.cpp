@@ -137,12 +137,12 @@ compile::Schedule load_plan(const PatchChoice& choice, compile::AssetCache& asse
 }
 
 std::vector<std::string> problem_lines(const patch::Problems& problems) {
-    constexpr std::size_t most_shown = 20;
+    constexpr std::size_t max_shown = 20;
     std::vector<std::string> lines;
-    for (const Error& error : problems.list | std::views::take(most_shown)) lines.emplace_back(error.what());
-    if (const std::size_t all = problems.list.size(); all > most_shown)
+    for (const Error& error : problems.list | std::views::take(max_shown)) lines.emplace_back(error.what());
+    if (const std::size_t all = problems.list.size(); all > max_shown)
         lines.push_back(
-            fmt::format("… and {} more error{}", with_commas(all - most_shown), all - most_shown == 1 ? "" : "s"));
+            fmt::format("… and {} more error{}", with_commas(all - max_shown), all - max_shown == 1 ? "" : "s"));
     return lines;
 }
 

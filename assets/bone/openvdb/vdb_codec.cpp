@@ -28,7 +28,7 @@ constexpr const char* format_key = "tactus_format";
 // Format 3 stores only blocks near the bone. All other samples have the grid's background value.
 constexpr std::int32_t newest_format = 3, sparse_format = 3, dense_format = 2;
 // Limits of a sparse file: dense samples per stored sample, and dense samples in all.
-constexpr double most_claimed = 4096.0, most_samples = 1e9;
+constexpr double max_claimed = 4096.0, max_samples = 1e9;
 constexpr const char *points_key = "points", *border_key = "scanned border";
 
 // Calls visit(leaf, first, end) for every block of 8 x 8 x 8 samples: those of the grid in [first, end).
@@ -110,7 +110,7 @@ volume::Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::
     grid.spacing = {spacing.x(), spacing.y(), spacing.z()};
     const double claimed = double(size.x()) * size.y() * size.z(), held = double(vdb.activeVoxelCount());
     if (size.x() < 1 || size.y() < 1 || size.z() < 1 ||
-        (is_sparse ? claimed > most_claimed * held || claimed > most_samples : claimed != held))
+        (is_sparse ? claimed > max_claimed * held || claimed > max_samples : claimed != held))
         throw Error(
             fmt::format("{}: grid '{}' does not hold the number of samples that its size states", file, vdb.getName()));
     if (!is_finite(grid.origin) || !is_finite(grid.spacing) ||

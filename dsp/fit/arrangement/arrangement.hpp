@@ -53,7 +53,7 @@ public:
     int group_of(int fragment) const noexcept { return at(fragment).group; }
     int parent_of(int group) const noexcept { return groups_[static_cast<std::size_t>(group)].parent; }
     bool exists(int group) const noexcept;
-    std::size_t most_groups() const noexcept { return groups_.size(); }
+    std::size_t max_groups() const noexcept { return groups_.size(); }
     /// The outermost group of the fragment, or `none`.
     int outermost(int fragment) const noexcept;
     /// True for the fragment itself and all members of its outermost group.

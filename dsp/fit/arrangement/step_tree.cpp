@@ -31,7 +31,7 @@ StepTree::Step StepTree::changes(const Arrangement& from, const Arrangement& to)
     Step step{0, places_.size(), groups_.size(), 0, 0};
     for (int n = 0; n < static_cast<int>(fragments_); ++n)
         if (!same(from.fragment(n), to.fragment(n))) places_.push_back({n, from.fragment(n), to.fragment(n)});
-    for (int n = 0; n < static_cast<int>(from.most_groups()); ++n)
+    for (int n = 0; n < static_cast<int>(from.max_groups()); ++n)
         if (!same(from.group(n), to.group(n))) groups_.push_back({n, from.group(n), to.group(n)});
     step.place_count = places_.size() - step.places;
     step.group_count = groups_.size() - step.groups;

@@ -9,7 +9,7 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr double least_alike_normals = 0.5;  // of two normals: 60 degrees, as in a registration
+constexpr double min_alike_normals = 0.5;  // of two normals: 60 degrees, as in a registration
 
 }  // namespace
 
@@ -21,7 +21,7 @@ HealthyPull::HealthyPull(std::span<const contact::SurfacePoint> points, const He
             glm::length(p.normal) > 0.5)
             outside.push_back(&p);
     if (!settings.side || outside.empty()) return;
-    const std::size_t stride = (outside.size() + settings.most_points - 1) / settings.most_points;
+    const std::size_t stride = (outside.size() + settings.max_points - 1) / settings.max_points;
     double area = 0.0;
     for (std::size_t n = 0; n < outside.size(); n += stride) {
         links_.push_back(
@@ -39,7 +39,7 @@ void HealthyPull::look(const Pose& body) noexcept {
         link.to = settings_.side->position(nearest);
         link.along = settings_.side->normal(nearest);
         link.weight = 0.0;
-        if (glm::dot(body.rotate(link.normal), link.along) < least_alike_normals) continue;
+        if (glm::dot(body.rotate(link.normal), link.along) < min_alike_normals) continue;
         const double d = glm::dot(link.along, at - link.to), share = s2 / (s2 + d * d);
         link.weight = settings_.weight * link.share * share * share;
     }

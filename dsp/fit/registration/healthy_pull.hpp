@@ -17,7 +17,7 @@ struct HealthyPullSettings {
     const RegistrationTarget* side = nullptr;  ///< in the frame of the poses; must outlive the matcher; null: none
     double scale = 1e-3;  ///< m, of the robust kernel: points farther away have little weight
     double weight = 0.05;  ///< of all points together, relative to the leading face
-    std::size_t most_points = 500;  ///< maximum per fragment
+    std::size_t max_points = 500;  ///< maximum per fragment
 };
 
 /// The outside of one fragment.

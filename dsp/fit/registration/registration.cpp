@@ -20,7 +20,7 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr double least_cosine = 0.5;
+constexpr double min_cosine = 0.5;
 
 std::vector<Vec3> positions_of(std::span<const contact::SurfacePoint> points) {
     std::vector<Vec3> positions;
@@ -95,7 +95,7 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
             const std::size_t to = last[i] = fixed.nearest(x, last[i]);
             const Vec3& n = fixed.normal(to);
             const double facing = glm::dot(pose.rotate(p.normal), n);
-            if (!(facing > least_cosine)) continue;
+            if (!(facing > min_cosine)) continue;
             const Vec3 difference = x - fixed.position(to);
             const double squares = glm::dot(difference, difference), kernel = s * s / (s * s + squares);
             const double weight = p.area * facing * kernel * kernel, d = glm::dot(n, difference);
@@ -175,7 +175,7 @@ enum class From : std::uint8_t { near, far };
 /// `near`: the start may be close already, as it is not when starts are only compared.
 Registration registered(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
                         const Pose& start, const RegistrationSettings& settings, From where) {
-    const std::vector<contact::SurfacePoint> some = thinned(moving, settings.most_points);
+    const std::vector<contact::SurfacePoint> some = thinned(moving, settings.max_points);
     const auto from_scale = [&](double widest, double finest) {
         RegistrationSettings scales = settings;
         scales.widest = widest;
@@ -233,7 +233,7 @@ std::vector<Registration> coarse_registrations(std::span<const contact::SurfaceP
                                                const RegistrationTarget& fixed, const RegistrationSettings& settings) {
     const Spread from = spread_of(moving), to = spread_of(fixed_points);
     RegistrationSettings coarse = settings;
-    coarse.most_points = std::max<std::size_t>(200, settings.most_points / 8);
+    coarse.max_points = std::max<std::size_t>(200, settings.max_points / 8);
     coarse.finest = 3.0 * settings.finest;
     coarse.stages = settings.stages / 2;
     coarse.by_parts = false;
@@ -383,7 +383,7 @@ JudgedRegistration search_registration(std::span<const contact::SurfacePoint> mo
         std::erase_if(judged.rivals, [&](const JudgedRegistration::Rival& rival) {
             return ratio(judged.score, rival.score) < clearly_better;
         });
-    if (start) judged.best.before = median_distance(thinned(moving, settings.most_points), fixed, *start);
+    if (start) judged.best.before = median_distance(thinned(moving, settings.max_points), fixed, *start);
     return judged;
 }
 

@@ -15,7 +15,7 @@ namespace tactus::fit {
 struct RegistrationSettings {
     double widest = 20e-3, finest = 1e-3;  ///< m, scale of the robust kernel: points far beyond it have little weight
     int stages = 60;
-    std::size_t most_points = 4000;  ///< maximum number of moving points, selected evenly from the list
+    std::size_t max_points = 4000;  ///< maximum number of moving points, selected evenly from the list
     bool by_parts = false;  ///< a large part may be displaced: finds the pose that most of the surface supports
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double half_width = 20.0;   // zero crossings of the sinc on each side
 constexpr double attenuation = 80.0;  // dB
-constexpr std::size_t most_phases = 1024;
+constexpr std::size_t max_phases = 1024;
 
 constexpr std::size_t table_size = 16384;
 
@@ -75,7 +75,7 @@ ResamplingStream::ResamplingStream(std::size_t frames, double from, double to, d
     const double last = static_cast<double>(frames) - 1.0;
     count_ = static_cast<std::size_t>(std::max(0.0, std::floor((last - begin_) / step_ + 1e-9) + 1.0));
     std::size_t phases = 0;
-    for (std::size_t n = 1; n <= most_phases && phases == 0; ++n) {
+    for (std::size_t n = 1; n <= max_phases && phases == 0; ++n) {
         const double position = static_cast<double>(n) * step_;
         if (std::abs(position - std::round(position)) < 1e-9) phases = n;
     }

@@ -87,7 +87,7 @@ RidgeStream::RidgeStream(double rate, const RidgeSettings& settings)
       settings_(settings),
       frame_(static_cast<std::size_t>(settings.frame * rate)),
       hop_(std::max<std::size_t>(1, frame_ / 4)),
-      most_frames_(960),
+      max_frames_(960),
       bins_per_hz_(static_cast<double>(std::bit_ceil(4 * std::max<std::size_t>(frame_, 16))) / rate),
       grid_(std::max(0.002, 0.25 / (settings.frame * settings.highest))),
       window_(make_window(WindowKind::hann, std::max<std::size_t>(frame_, 16))),
@@ -106,7 +106,7 @@ RidgeStream::RidgeStream(double rate, const RidgeSettings& settings)
 
 void RidgeStream::push(std::span<const double> samples) {
     held_.insert(held_.end(), samples.begin(), samples.end());
-    while (frame_ >= 16 && held_.size() >= (most_frames_ - 1) * hop_ + frame_) track(most_frames_);
+    while (frame_ >= 16 && held_.size() >= (max_frames_ - 1) * hop_ + frame_) track(max_frames_);
 }
 
 Ridge RidgeStream::finish() {
@@ -135,7 +135,7 @@ double RidgeStream::power_of(std::span<const double> samples) {
 /// The best path through so many frames from the first held sample on.
 void RidgeStream::track(std::size_t frames) {
     const std::size_t count = candidates_.size();
-    const auto reach = std::max<std::ptrdiff_t>(1, std::lround(settings_.most_change / grid_));
+    const auto reach = std::max<std::ptrdiff_t>(1, std::lround(settings_.max_change / grid_));
     std::vector<std::uint16_t> from(frames * count);
     const auto frame_at = [&](std::size_t i) { return std::span<const double>(held_).subspan(i * hop_, frame_); };
     for (std::size_t i = 0; i < frames; ++i) {

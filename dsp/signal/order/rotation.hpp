@@ -41,7 +41,7 @@ struct RidgeSettings {
     double lowest = 20.0, highest = 400.0;  ///< Hz: range of the rate
     int orders = 5;  ///< number of orders expected to be strong together
     double frame = 0.25;  ///< s
-    double most_change = 0.08;  ///< greatest relative change of the rate per quarter frame
+    double max_change = 0.08;  ///< greatest relative change of the rate per quarter frame
 };
 
 struct Ridge {
@@ -69,7 +69,7 @@ private:
 
     double rate_;
     RidgeSettings settings_;
-    std::size_t frame_, hop_, most_frames_, done_ = 0, top_;
+    std::size_t frame_, hop_, max_frames_, done_ = 0, top_;
     double bins_per_hz_, grid_;
     std::vector<double> candidates_, score_, next_, window_, held_, x_, power_, sorted_;
     std::vector<std::complex<double>> spectrum_;

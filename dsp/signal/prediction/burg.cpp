@@ -50,7 +50,7 @@ void predictor_of(std::span<const double> reflection, std::span<double> predicto
 }
 
 bool reflection_of(std::span<double> predictor) noexcept {
-    std::array<double, most_prediction_order> before{};
+    std::array<double, max_prediction_order> before{};
     for (std::size_t m = predictor.size(); m-- > 0;) {
         const double k = predictor[m], rest = 1.0 - k * k;
         if (!(rest > 0.0)) return false;

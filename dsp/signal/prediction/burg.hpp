@@ -23,6 +23,6 @@ bool reflection_of(std::span<double> predictor) noexcept;
 /// Mean square of the filter's output for white noise of mean square 1: ∏ 1 / (1 − k²).
 double prediction_gain(std::span<const double> reflection) noexcept;
 
-constexpr std::size_t most_prediction_order = 64;
+constexpr std::size_t max_prediction_order = 64;
 
 }  // namespace tactus::signal

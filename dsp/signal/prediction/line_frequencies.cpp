@@ -65,7 +65,7 @@ void add_roots(const Polynomial& symmetric, std::size_t steps, std::vector<doubl
 
 std::vector<double> line_frequencies(std::span<const double> predictor) {
     std::vector<double> stable(predictor.begin(), predictor.end());
-    if (predictor.size() % 2 != 0 || predictor.size() > most_prediction_order || !reflection_of(stable))
+    if (predictor.size() % 2 != 0 || predictor.size() > max_prediction_order || !reflection_of(stable))
         throw Error("only a stable predictor of even order has line spectral frequencies");
     const Halves halves = halves_of(predictor);
     std::vector<double> lines;
@@ -85,7 +85,7 @@ std::vector<double> line_frequencies(std::span<const double> predictor) {
 void predictor_of_lines(std::span<const double> lines, std::span<double> predictor) noexcept {
     const std::size_t p = lines.size();
     // From the smallest line on, lines belong to the sum and the difference by turns.
-    std::array<double, most_prediction_order + 2> halves[2] = {};
+    std::array<double, max_prediction_order + 2> halves[2] = {};
     for (std::size_t which = 0; which < 2; ++which) {
         auto& c = halves[which];
         c[0] = 1.0;

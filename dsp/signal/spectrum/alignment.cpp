@@ -46,7 +46,7 @@ std::ptrdiff_t peak_of(const std::vector<double>& circle, std::ptrdiff_t from, s
     return best;
 }
 
-constexpr double least_overlap = 1.0;  // s, and a quarter of the shorter record
+constexpr double min_overlap = 1.0;  // s, and a quarter of the shorter record
 
 /// Odds and lags of one search for a delay.
 struct DelaySearch {
@@ -117,7 +117,7 @@ Alignment delay_between(std::span<const double> reference, std::span<const doubl
 Alignment delay_of_blocks(std::span<const double> reference, std::span<const double> output, DelaySearch wanted,
                           double longest) {
     const std::size_t shorter = std::min(reference.size(), output.size());
-    const auto least = static_cast<std::size_t>(least_overlap * wanted.rate);
+    const auto least = static_cast<std::size_t>(min_overlap * wanted.rate);
     if (shorter < least) return {};
     const std::size_t block = std::max(least, shorter / 4);
     wanted.reach = static_cast<std::ptrdiff_t>(block);
@@ -161,7 +161,7 @@ Alignment align_takes(std::span<const double> reference, std::span<const double>
     if (from_reference >= reference.size() || from_output >= output.size()) return {};
     const std::span<const double> r = reference.subspan(from_reference), d = output.subspan(from_output);
     const std::size_t overlap = std::min(r.size(), d.size());
-    if (static_cast<double>(overlap) < std::min(shorter, std::max(least_overlap * rate, 0.25 * shorter))) return {};
+    if (static_cast<double>(overlap) < std::min(shorter, std::max(min_overlap * rate, 0.25 * shorter))) return {};
     wanted.reach = static_cast<std::ptrdiff_t>(std::ceil(search * rate));
     wanted.tests = 0.0;
     const Alignment fine = delay_between(r.first(overlap), d.first(overlap), wanted);

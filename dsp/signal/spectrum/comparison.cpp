@@ -28,7 +28,7 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
-constexpr double least_coherence = 0.5;  // of copies: others are compared by their statistics
+constexpr double min_coherence = 0.5;  // of copies: others are compared by their statistics
 
 /// A take resampled to the common rate, in pieces.
 class Stream {
@@ -222,7 +222,7 @@ void score_spectra(Axes axes, const ComparisonOptions& options, SpectrogramSimil
     result.touch_gap_db = decibels(felt_output / felt_reference);
 
     // A band that reaches beyond what can be trusted does not count; the one of 1000 Hz does.
-    const double last_centre = high < 0.999 * most_frequency ? high / std::pow(10.0, 0.05) : high;
+    const double last_centre = high < 0.999 * max_frequency ? high / std::pow(10.0, 0.05) : high;
     result.third_octaves =
         third_octave_errors({fine_reference.power, fine_output.power, fine_reference.df}, low, last_centre, gain);
     double square = 0.0;
@@ -263,7 +263,7 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     result.statistics = statistics_difference(reference.frames(), output.frames());
     if (!waveforms) return;
     // These compare all frequencies of the waveforms.
-    if (result.highest >= 0.999 * most_frequency) {
+    if (result.highest >= 0.999 * max_frequency) {
         result.st_sim = waveforms->st_sim();
         result.spqi = waveforms->spqi();
         result.signal_to_noise_db = waveforms->signal_to_noise_db();
@@ -281,7 +281,7 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     for (std::size_t k = 0; k < cross.xx.size(); ++k)
         if (in_band(k) && cross.xx[k] > 1e-4 * greatest) sum += result.coherence[k], count += 1.0;
     result.coherence_mean = count > 0.0 ? sum / count : 0.0;
-    if (*result.coherence_mean > least_coherence) {
+    if (*result.coherence_mean > min_coherence) {
         result.course_db = course_difference_db(reference.frames(), output.frames());
         result.statistics.reset();
     }
@@ -307,14 +307,14 @@ Take::Take(std::span<const double> samples, double sample_rate)
 
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options) {
     Comparison result;
-    result.highest = std::min({most_frequency, reference.usable, output.usable});
+    result.highest = std::min({max_frequency, reference.usable, output.usable});
     if (!(result.highest >= narrowest_band)) {
         const bool first = reference.usable < output.usable;
         throw Error(
             fmt::format("the {}, sampled at {}, can be trusted to {:.3g} Hz only: vibrations are compared from "
                         "{:g} Hz on, at least to {:g} Hz",
                         first ? "reference" : "output", readable(first ? reference.rate : output.rate, "Hz", 6),
-                        result.highest, least_frequency, narrowest_band));
+                        result.highest, min_frequency, narrowest_band));
     }
     result.end = 0.5 * std::min({rate, reference.rate, output.rate});
     for (const auto& [take, name] : {std::pair(&reference, "reference"), std::pair(&output, "output")})

@@ -43,13 +43,13 @@ struct ComparisonOptions {
     std::vector<Take> reference_axes{}, output_axes{};
 };
 
-/// The band of scores, Hz: from `least_frequency` to the upper limit of both takes, at most `most_frequency`. A band
+/// The band of scores, Hz: from `min_frequency` to the upper limit of both takes, at most `max_frequency`. A band
 /// that ends below `narrowest_band` is too narrow to compare.
-inline constexpr double least_frequency = 40.0, most_frequency = 1000.0, touch_end = 500.0, narrowest_band = 80.0;
+inline constexpr double min_frequency = 40.0, max_frequency = 1000.0, touch_end = 500.0, narrowest_band = 80.0;
 
 struct Comparison {
     Alignment alignment;
-    double lowest = least_frequency, highest = most_frequency;  ///< Hz: the valid band of both takes
+    double lowest = min_frequency, highest = max_frequency;  ///< Hz: the valid band of both takes
     /// Hz: end of the band of `lsd_db` and `cosine_500`.
     double touched() const { return std::min(touch_end, highest); }
     double gain_db = 0.0;  ///< gain that gives the output the reference's power in the band

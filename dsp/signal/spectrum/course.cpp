@@ -14,7 +14,7 @@ namespace tactus::signal {
 namespace {
 
 constexpr double frame_seconds = 0.02;
-constexpr std::size_t least_frames = 50;
+constexpr std::size_t min_frames = 50;
 /// Above the differences of equal takes, seeds below 100 of `tactus-bench verdicts`.
 constexpr std::array<double, 5> statistic_tolerance{0.3, 1.5, 0.5, 0.5, 0.5};
 constexpr double course_floor_db = 30.0;
@@ -86,7 +86,7 @@ double CourseStatistics::kurtosis() const { return std::exp(values[0]); }
 
 std::optional<StatisticsDifference> statistics_difference(std::span<const Course::Frame> reference,
                                                           std::span<const Course::Frame> output) {
-    if (std::min(reference.size(), output.size()) < least_frames) return std::nullopt;
+    if (std::min(reference.size(), output.size()) < min_frames) return std::nullopt;
     const auto spread_of = [](std::span<const Course::Frame> frames, std::size_t i) {
         const std::size_t half = frames.size() / 2;
         return 0.5 * std::abs(CourseStatistics(frames.first(half)).values[i] -

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double silent_score = 0.07;  // of a section in which nothing is heard
 constexpr double step_cost = 0.7;      // per unit of ln(f) between sections
-constexpr double most_step = 0.2;      // greatest cost
-constexpr double least_support = 0.25;
+constexpr double max_step = 0.2;      // greatest cost
+constexpr double min_support = 0.25;
 // A rate that moves within a section smears its lines and lowers their scores; that sections in half of the record agree
 // on one path is evidence of its own. Paths of 60 noises of 3 to 6 s reach 0.101, those of machete strokes 0.094.
 constexpr double heard_as_path = 0.13;
-constexpr std::size_t least_path = 4;  // sections
+constexpr std::size_t min_path = 4;  // sections
 // A rate whose sections agree to 1 % is steady, and only the lines of the whole record are evidence for it: hum beside a
 // machine is such a rate.
 constexpr double moving = 1.01, wide = 1.1;  // highest by lowest rate of a path
@@ -79,7 +79,7 @@ void FundamentalStream::end_section() {
     for (const double movement : movement_) all += movement, most = std::max(most, movement);
     // An impact excites many frequencies at once: the ripples of its spectrum are no lines.
     if (most < jump_in * all)
-        for (const HarmonicSum& one : harmonic_sums(section_.spectrum(), lowest_, highest_moving_, most_candidates))
+        for (const HarmonicSum& one : harmonic_sums(section_.spectrum(), lowest_, highest_moving_, max_candidates))
             section.candidates[section.count++] = one;
     sections_.push_back(section);
     section_ = fresh_section_;
@@ -97,7 +97,7 @@ void FundamentalStream::gap() {
 
 /// The path with the greatest sum of scores less costs of changes, by dynamic programming.
 FundamentalStream::Path FundamentalStream::best_path() const {
-    constexpr std::size_t states = most_candidates + 1;  // the last one: nothing heard
+    constexpr std::size_t states = max_candidates + 1;  // the last one: nothing heard
     std::vector<std::array<std::size_t, states>> from(sections_.size());
     std::array<double, states> total{}, next{};
     for (std::size_t i = 0; i < sections_.size(); ++i) {
@@ -114,8 +114,8 @@ FundamentalStream::Path FundamentalStream::best_path() const {
                 const double before = i > 0 ? frequency_of(i - 1, origin) : 0.0;
                 const double cost =
                     here > 0.0 && before > 0.0
-                        ? std::min(most_step, step_cost * std::abs(std::log(here / before)))
-                        : 0.5 * most_step * static_cast<double>((here > 0.0) != (before > 0.0) && i > 0);
+                        ? std::min(max_step, step_cost * std::abs(std::log(here / before)))
+                        : 0.5 * max_step * static_cast<double>((here > 0.0) != (before > 0.0) && i > 0);
                 if (total[origin] - cost + score > next[state]) {
                     next[state] = total[origin] - cost + score;
                     from[i][state] = origin;
@@ -167,7 +167,7 @@ FundamentalEstimate FundamentalStream::along(const Path& path) const {
         supporting += std::any_of(section.candidates.begin(),
                                   section.candidates.begin() + static_cast<std::ptrdiff_t>(section.count),
                                   [&](const HarmonicSum& one) { return alike(one.frequency, sharp.frequency, 0.03); });
-    const bool supported = static_cast<double>(supporting) >= least_support * static_cast<double>(sections_.size());
+    const bool supported = static_cast<double>(supporting) >= min_support * static_cast<double>(sections_.size());
     const double fixed = (supported ? 1.0 : 0.3) * confidence_in(whole);
     const double weaker = std::min(fixed, varied), stronger = std::max(fixed, varied);
     // One rate of a path is no other answer than the path.
@@ -186,7 +186,7 @@ FundamentalEstimate FundamentalStream::along(const Path& path) const {
     }
     out.low = out.steady ? out.frequency : low;
     out.high = out.steady ? out.frequency : high;
-    const bool is_path = !out.steady && heard.size() >= least_path && share >= 0.5 && out.high > moving * out.low;
+    const bool is_path = !out.steady && heard.size() >= min_path && share >= 0.5 && out.high > moving * out.low;
     if (out.confidence < (is_path ? heard_as_path : FundamentalEstimate::heard)) out = {};
     // A steady rate is certain by the lines of the whole record only. Of a moving one, the sections must resolve the half.
     out.certain = is_path && out.confidence >= FundamentalEstimate::path && out.low > 2.0 * section_least(rate_);
@@ -203,7 +203,7 @@ SteadyFundamental FundamentalStream::lines_along(const Path& path, double median
     std::size_t known = 0;
     for (std::size_t i = 0; i < course.size(); ++i)
         if (alike(path.points[i].frequency, median, 0.25)) course[i] = path.points[i].frequency, ++known;
-    if (known < least_path) return {};
+    if (known < min_path) return {};
     double before = 0.0;
     for (std::size_t i = 0; i < course.size(); ++i) {
         if (course[i] > 0.0) {

@@ -54,9 +54,9 @@ public:
     FundamentalEstimate estimate() const;
 
 private:
-    static constexpr std::size_t most_candidates = 6;
+    static constexpr std::size_t max_candidates = 6;
     struct Section {
-        std::array<HarmonicSum, most_candidates> candidates{};
+        std::array<HarmonicSum, max_candidates> candidates{};
         std::size_t count = 0;
     };
     struct Path {

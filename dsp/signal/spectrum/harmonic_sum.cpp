@@ -8,11 +8,11 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr int most_orders = 10;
+constexpr int max_orders = 10;
 constexpr double full_db = 30.0;         // an order so far above the noise counts fully
-constexpr std::size_t most_lines = 32;   // strongest lines that candidates are made of
+constexpr std::size_t max_lines = 32;   // strongest lines that candidates are made of
 constexpr double neighbours = 0.03;
-constexpr double least_spacing = 5.0;  // bins between orders: a line of a Hann window is four wide
+constexpr double min_spacing = 5.0;  // bins between orders: a line of a Hann window is four wide
 
 /// Level of a bin of noise over the quantile that stands for it, exceeded by 1 % of bins (Wilson and Hilferty 1931).
 double noise_peak_db(double segments) {
@@ -31,8 +31,8 @@ double reach_of(double place, double fundamental, double df) {
 HarmonicSummer::HarmonicSummer(std::size_t bins) {
     peaks_.reserve(bins / 2 + 1);
     strongest_.reserve(bins / 2 + 1);
-    combs_.reserve(most_lines * most_orders);
-    found_.reserve(most_lines * most_orders);
+    combs_.reserve(max_lines * max_orders);
+    found_.reserve(max_lines * max_orders);
 }
 
 /// Local maxima above the noise, by frequency.
@@ -79,7 +79,7 @@ const HarmonicSummer::Peak* HarmonicSummer::peak_near(double frequency, double r
 HarmonicSummer::Comb HarmonicSummer::comb_of(double total, double frequency, double df, double top) const noexcept {
     Comb out{frequency, 0.0, 0.0};
     for (int round = 0; round < 2; ++round) {
-        const int orders = std::clamp(static_cast<int>(top / out.frequency), 1, most_orders);
+        const int orders = std::clamp(static_cast<int>(top / out.frequency), 1, max_orders);
         double sum = 0.0, weights = 0.0, until_last = 0.0, products = 0.0, squares = 0.0;
         for (int k = 1; k <= orders; ++k) {
             const double place = k * out.frequency, weight = 1.0 / std::sqrt(k);
@@ -109,17 +109,17 @@ HarmonicSummer::Comb HarmonicSummer::comb_of(double total, double frequency, dou
 std::span<const HarmonicSum> HarmonicSummer::operator()(const Spectrum& spectrum, double lowest, double highest,
                                                         std::size_t most) noexcept {
     if (spectrum.power.size() < 8) return {};
-    const double top = std::min(most_orders * highest, spectrum.df * static_cast<double>(spectrum.power.size() - 2));
+    const double top = std::min(max_orders * highest, spectrum.df * static_cast<double>(spectrum.power.size() - 2));
     find_peaks(spectrum, std::max(0.7 * lowest, 2.0 * spectrum.df), top);
     strongest_.assign(peaks_.begin(), peaks_.end());
     std::ranges::sort(strongest_, [](const Peak& a, const Peak& b) { return a.salience > b.salience; });
     double total = 0.0, greatest = 1e-9;
     for (const Peak& peak : peaks_) total += peak.salience;
     combs_.clear();
-    for (const Peak& line : std::span(strongest_).first(std::min(strongest_.size(), most_lines)))
-        for (int order = 1; order <= most_orders; ++order) {
+    for (const Peak& line : std::span(strongest_).first(std::min(strongest_.size(), max_lines)))
+        for (int order = 1; order <= max_orders; ++order) {
             const double f = line.frequency / order;
-            if (f < lowest || f > highest || f < least_spacing * spectrum.df) continue;
+            if (f < lowest || f > highest || f < min_spacing * spectrum.df) continue;
             const Comb one = comb_of(total, f, spectrum.df, top);
             if (!(one.share > 0.0) || one.frequency < lowest || one.frequency > highest) continue;
             combs_.push_back(one);
@@ -137,7 +137,7 @@ std::span<const HarmonicSum> HarmonicSummer::operator()(const Spectrum& spectrum
     });
     std::size_t count = 0;
     for (const HarmonicSum& one : found_) {
-        if (count == std::min(most, most_sums)) break;
+        if (count == std::min(most, max_sums)) break;
         const std::span<const HarmonicSum> better(best_.data(), count);
         if (std::ranges::none_of(better, [&](const HarmonicSum& other) {
                 return std::abs(one.frequency / other.frequency - 1.0) < neighbours;

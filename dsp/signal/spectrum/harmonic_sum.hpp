@@ -31,11 +31,11 @@ public:
     /// For spectra of at most `bins` bins. Allocates.
     explicit HarmonicSummer(std::size_t bins);
 
-    /// Returns at most `most` sums, up to `most_sums`; valid until the next call. Wait-free, does not allocate.
+    /// Returns at most `most` sums, up to `max_sums`; valid until the next call. Wait-free, does not allocate.
     std::span<const HarmonicSum> operator()(const Spectrum& spectrum, double lowest, double highest,
                                             std::size_t most = 5) noexcept;
 
-    static constexpr std::size_t most_sums = 8;
+    static constexpr std::size_t max_sums = 8;
 
 private:
     struct Peak {
@@ -57,7 +57,7 @@ private:
     std::vector<Comb> combs_;
     std::vector<HarmonicSum> found_;
     std::array<double, 2 * around + 1> noise_{};
-    std::array<HarmonicSum, most_sums> best_{};
+    std::array<HarmonicSum, max_sums> best_{};
 };
 
 }  // namespace tactus::signal

@@ -42,17 +42,17 @@ LiveScores LiveComparison::scores() const noexcept {
     LiveScores scores;
     const Spectrum &r = reference_.fine.spectrum(), &d = output_.fine.spectrum();
     if (r.segments < enough || d.segments < enough) return scores;
-    const double reference_power = band_power(r, least_frequency, highest_),
-                 output_power = band_power(d, least_frequency, highest_);
+    const double reference_power = band_power(r, min_frequency, highest_),
+                 output_power = band_power(d, min_frequency, highest_);
     if (!(reference_power > no_power && output_power > no_power)) return scores;
     scores.heard = true;
     scores.gain_db = 10.0 * std::log10(reference_power / output_power);
     const double gain = std::sqrt(reference_power / output_power);
     const Spectrum &rough = reference_.coarse.spectrum(), &played = output_.coarse.spectrum();
     const SpectrumPair coarse{rough.power, played.power, rough.df};
-    scores.lsd_db = log_spectral_distance(coarse, least_frequency, std::min(touch_end, highest_), gain);
-    scores.cosine_500 = spectral_cosine(coarse, least_frequency, std::min(touch_end, highest_));
-    scores.third_octave_max_db = third_octave_max_error({r.power, d.power, r.df}, least_frequency, highest_, gain);
+    scores.lsd_db = log_spectral_distance(coarse, min_frequency, std::min(touch_end, highest_), gain);
+    scores.cosine_500 = spectral_cosine(coarse, min_frequency, std::min(touch_end, highest_));
+    scores.third_octave_max_db = third_octave_max_error({r.power, d.power, r.df}, min_frequency, highest_, gain);
     return scores;
 }
 

@@ -26,7 +26,7 @@ LiveSpectrum::LiveSpectrum(double rate, std::size_t segment, double memory)
     }
     const std::size_t step = segment - segment / 2;
     scale_ = 1.0 / (rate * squares);
-    least_share_ = lag_share(memory, static_cast<double>(step) / rate);
+    min_share_ = lag_share(memory, static_cast<double>(step) / rate);
     independence_ = tactus::signal::effective_segments(window, step, 64) / 64.0;
     spectrum_.power.assign(transform_.bins(), 0.0);
     spectrum_.df = rate / static_cast<double>(segment);
@@ -59,7 +59,7 @@ void LiveSpectrum::take_segment() noexcept {
         tapered_[i] = static_cast<float>(static_cast<double>(waiting_[i]) - mean) * window_[i];
     transform_.forward(tapered_, bins_);
     ++spectrum_.segments;
-    const double share = std::max(least_share_, 1.0 / static_cast<double>(spectrum_.segments));
+    const double share = std::max(min_share_, 1.0 / static_cast<double>(spectrum_.segments));
     const std::size_t last = bins_.size() - 1;
     const bool even = waiting_.size() % 2 == 0;
     for (std::size_t k = 0; k <= last; ++k) {

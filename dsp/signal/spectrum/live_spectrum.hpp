@@ -33,7 +33,7 @@ private:
     std::vector<float> window_, waiting_, tapered_;
     std::vector<std::complex<float>> bins_;
     std::size_t held_ = 0;
-    double scale_ = 0.0, least_share_ = 0.0, independence_ = 1.0;
+    double scale_ = 0.0, min_share_ = 0.0, independence_ = 1.0;
     Spectrum spectrum_;
 };
 

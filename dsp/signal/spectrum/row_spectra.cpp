@@ -10,7 +10,7 @@ RowSpectra::RowSpectra(const WelchSettings& settings, std::size_t values, std::s
       length_(settings.segment),
       hop_(std::max<std::size_t>(1, settings.segment / 2)),
       columns_(std::min(columns, settings.segment / 2 + 1)) {
-    if (values > hop_ * (most_rows + 1)) length_ = hop_ = std::max(length_, (values + most_rows - 1) / most_rows);
+    if (values > hop_ * (max_rows + 1)) length_ = hop_ = std::max(length_, (values + max_rows - 1) / max_rows);
 }
 
 void RowSpectra::push(std::span<const double> values) {

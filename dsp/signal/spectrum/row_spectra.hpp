@@ -11,10 +11,10 @@
 namespace tactus::signal {
 
 /// Each row is one segment, overlapping by half. For a long record, rows are averages of consecutive segments, so that
-/// there are never more than `most_rows`.
+/// there are never more than `max_rows`.
 class RowSpectra {
 public:
-    static constexpr std::size_t most_rows = 400;
+    static constexpr std::size_t max_rows = 400;
 
     /// `values`: length of the record; `columns`: bins that are kept. A record shorter than a segment gives no row. Throws
     /// Error for settings that are invalid.

@@ -50,7 +50,7 @@ void Spectrogram::add_column() {
     std::fill(sum_.begin(), sum_.end(), 0.0);
     in_column_ = 0;
     columns_.push_back(std::move(column));
-    if (columns_.size() < most_columns) return;
+    if (columns_.size() < max_columns) return;
     for (std::size_t i = 0; 2 * i + 1 < columns_.size(); ++i) {
         for (std::size_t k = 0; k < sum_.size(); ++k)
             columns_[i][k] = 0.5F * (columns_[2 * i][k] + columns_[2 * i + 1][k]);

@@ -12,7 +12,7 @@ namespace tactus::signal {
 
 class Spectrogram {
 public:
-    static constexpr std::size_t most_columns = 1024;
+    static constexpr std::size_t max_columns = 1024;
 
     /// Hann segments of `segment` samples with 50 % overlap; `rate` in Hz.
     Spectrogram(std::size_t segment, double rate);

@@ -16,12 +16,12 @@ namespace {
 
 constexpr double needed_rate = 22000.0;           // Hz: orders are sought up to 0.36 of it
 constexpr std::size_t longest_segment = 1 << 18;  // thinned samples
-constexpr std::size_t most_kept = 1 << 19;
-constexpr std::size_t most_levels = 6;
+constexpr std::size_t max_kept = 1 << 19;
+constexpr std::size_t max_levels = 6;
 constexpr double shortest_segment = 0.04;  // s
-constexpr std::size_t most_tested = 40;    // lines
+constexpr std::size_t max_tested = 40;    // lines
 constexpr std::size_t seed_lines = 12;          // lines that candidates are made of
-constexpr int most_divisions = 24;
+constexpr int max_divisions = 24;
 constexpr double bins_between = 5.0;  // of neighbouring orders: a line of a Hann window is four wide
 
 constexpr std::size_t floor_block = 32;  // bins
@@ -131,7 +131,7 @@ double explained_by(double power, const NarrowLines& lines, bool with_hum) {
 
 struct GrownComb {
     double frequency = 0.0, score = -1e9;
-    std::array<int, most_tested> order{};  // of each tested line; 0: none
+    std::array<int, max_tested> order{};  // of each tested line; 0: none
     std::size_t lines = 0;
     int highest = 0, common = 0;
     double power = 0.0;
@@ -139,8 +139,8 @@ struct GrownComb {
 
 /// Grows a comb order by order: each line that fits narrows the rate, and with it the reach of the next.
 GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation, bool with_hum) {
-    const std::size_t tested = std::min(lines.found.size(), most_tested);
-    std::array<std::size_t, most_tested> by_frequency{};
+    const std::size_t tested = std::min(lines.found.size(), max_tested);
+    std::array<std::size_t, max_tested> by_frequency{};
     std::iota(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested), 0u);
     std::sort(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested),
               [&](std::size_t a, std::size_t b) { return lines.found[a].frequency < lines.found[b].frequency; });
@@ -209,14 +209,14 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
     out.lines = &lines;
     std::vector<GrownComb> combs;
     for (std::size_t i = 0; i < std::min(seed_lines, lines.found.size()); ++i)
-        for (int k = 1; k <= most_divisions; ++k) {
+        for (int k = 1; k <= max_divisions; ++k) {
             const double f = lines.found[i].frequency / k;
             if (f < lowest || f > highest || f < bins_between * lines.df) continue;
             combs.push_back(grow_comb(lines, f, lines.found[i].deviation / k, with_hum));
         }
     // Coincidences among weak lines do not make up for a strong line that a comb leaves out.
     double all = 0.0;
-    for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i)
+    for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i)
         if (with_hum || !lines.found[i].is_hum) all += lines.found[i].power;
     for (GrownComb& one : combs) one.score *= std::min(1.0, one.power / std::max(all, 1e-300));
     for (const GrownComb& one : combs)
@@ -264,18 +264,18 @@ SteadyFundamentalStream::SteadyFundamentalStream(double rate, std::size_t frames
     // Lengths with three significant bits have small prime factors.
     const std::size_t unit = std::max<std::size_t>(1, std::bit_floor(segment) / 4);
     segment = segment / unit * unit;
-    for (std::size_t level = 0; level < most_levels; ++level, segment /= 4) {
+    for (std::size_t level = 0; level < max_levels; ++level, segment /= 4) {
         if (level > 0 && (static_cast<double>(segment) < shortest_segment * rate_ || segment < 64)) break;
         levels_.emplace_back(WelchSettings::hann(rate_, std::max<std::size_t>(segment, 4), segment / 2));
     }
-    kept_.reserve(std::min(thinned + 1, most_kept));
+    kept_.reserve(std::min(thinned + 1, max_kept));
 }
 
 void SteadyFundamentalStream::push_thinned(std::span<const double> samples) {
     for (WelchStream<double>& level : levels_) level.push(samples);
     if (keeps_)
         kept_.insert(kept_.end(), samples.begin(),
-                     samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), most_kept - kept_.size())));
+                     samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), max_kept - kept_.size())));
 }
 
 void SteadyFundamentalStream::push(std::span<const double> samples) {
@@ -353,7 +353,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     const bool is_first = std::min(std::abs(comb.frequency - 55.0), std::abs(comb.frequency - 110.0)) < 12.0;
     bool has_hum = is_first;
     bool is_over_hum = false;  // a multiple of what was taken for hum
-    for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i) {
+    for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i) {
         const NarrowLine& line = lines.found[i];
         if (comb.order[i] == 0) {
             has_hum |= line.is_hum;

@@ -13,7 +13,7 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr std::size_t most_peaks = 20;
+constexpr std::size_t max_peaks = 20;
 
 /// Windows three quarters over each other, from three quarters before the record to three quarters after it: the sum of
 /// their squares is the same at each sample.
@@ -26,7 +26,7 @@ WelchSettings band_settings(double rate, std::size_t frames) {
 
 std::vector<SpectralLine> strongest(std::vector<SpectralLine> lines) {
     std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.power > b.power; });
-    if (lines.size() > most_peaks) lines.resize(most_peaks);
+    if (lines.size() > max_peaks) lines.resize(max_peaks);
     std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.frequency < b.frequency; });
     return lines;
 }

@@ -229,7 +229,7 @@ void WelchStream<T>::take(std::size_t count) {
     if (settings_.averaging == Averaging::median) {
         for (std::size_t i = 0; i < count; ++i, ++segments_) {
             if (segments_ % keep_every_ != 0) continue;
-            if (kept_.size() == most_median_segments) {
+            if (kept_.size() == max_median_segments) {
                 for (std::size_t j = 1; 2 * j < kept_.size(); ++j) kept_[j] = std::move(kept_[2 * j]);
                 kept_.resize((kept_.size() + 1) / 2);
                 keep_every_ *= 2;

@@ -79,12 +79,12 @@ using ForEach = std::function<void(std::size_t count, const std::function<void(s
 template <class T>
 Spectrum welch(std::span<const T> record, WelchSettings settings, const ForEach& for_each = {});
 
-/// The same for a record that comes in pieces, in constant memory: the median keeps at most `most_median_segments`
+/// The same for a record that comes in pieces, in constant memory: the median keeps at most `max_median_segments`
 /// segments, every 2ᵏth of a long record.
 template <class T>
 class WelchStream {
 public:
-    static constexpr std::size_t most_median_segments = 1024;
+    static constexpr std::size_t max_median_segments = 1024;
 
     /// Throws Error when the settings are invalid.
     explicit WelchStream(const WelchSettings& settings);

@@ -32,7 +32,7 @@ struct Squeeze {
 
 /// Longest internal step, s: an eighth of the shortest time constant assumed for a motor.
 inline constexpr double finger_substep_s = 0.125e-3;
-inline constexpr int most_command_delay = 8;
+inline constexpr int max_command_delay = 8;
 
 struct Finger {
     std::variant<WalkingMotor, WaveMotor> motor;
@@ -50,9 +50,9 @@ struct Finger {
     /// Advances by `elapsed` s at the command `wanted` m/s, while the cord moves to `cord_end`.
     void advance(double wanted, double cord_end, double elapsed, bool free) noexcept {
         if (!(elapsed > 0.0)) return;
-        for (std::size_t d = most_command_delay; d > 0; --d) told_[d] = told_[d - 1];
+        for (std::size_t d = max_command_delay; d > 0; --d) told_[d] = told_[d - 1];
         told_[0] = wanted;
-        const double command = told_[static_cast<std::size_t>(std::clamp(delay, 0, most_command_delay))];
+        const double command = told_[static_cast<std::size_t>(std::clamp(delay, 0, max_command_delay))];
         const int steps = std::max(1, static_cast<int>(std::ceil(elapsed / finger_substep_s - 1e-6)));
         const double h = elapsed / steps;
         // The servo interpolates between targets: cubic Hermite with the slopes of neighbouring targets.
@@ -90,7 +90,7 @@ private:
         return a * r * r * (1.0 + 2.0 * s) + slope_a * s * r * r + b * s * s * (3.0 - 2.0 * s) - slope_b * s * s * r;
     }
 
-    std::array<double, most_command_delay + 1> told_{};
+    std::array<double, max_command_delay + 1> told_{};
     double time_ = 0.0, cord_ = 0.0, cord_slope_ = 0.0;
 };
 

@@ -129,7 +129,7 @@ Cycle burr_cycle(const Place& place, bool running, double depth, const Vec3& asi
     carve::CarveSettings settings;
     settings.kerf = 4e-3;
     settings.tooth_pitch = saw::tooth_pitch;
-    settings.blade_length = (carve::CutFront::most_nodes - 1) * settings.tooth_pitch - settings.stroke;
+    settings.blade_length = (carve::CutFront::max_nodes - 1) * settings.tooth_pitch - settings.stroke;
     carver.prepare(bone, settings);
     std::vector<carve::CutFront> path;
     volume::BoneSnapshot read = bone.current();

@@ -55,7 +55,7 @@ public:
     std::filesystem::path folder;
 };
 
-double most_given(HapticDevice& device, Peer& peer, double newton) {
+double max_given(HapticDevice& device, Peer& peer, double newton) {
     double most = 0.0;
     for (int i = 0; i < 60; ++i) {
         device.commit({{i < 20 ? 0.0 : newton, 0.0, 0.0}, {}});
@@ -107,7 +107,7 @@ TEST_CASE("Force Dimension: enabled before any force, the device's watchdog set,
         CHECK(device->info().max_force == 12.0);
         CHECK(device->info().max_torque == 0.2);
         CHECK(device->opened().serial == "4711");
-        CHECK(most_given(*device, *peer, 2.0) == 2.0);
+        CHECK(max_given(*device, *peer, 2.0) == 2.0);
         CHECK(tell<int>(*peer, "fake_watchdog") == 160);
         CHECK(tell<int>(*peer, "fake_forces_before_enable") == 0);
         CHECK(tell<int>(*peer, "fake_force_on") == 1);
@@ -131,7 +131,7 @@ TEST_CASE("a device that is not calibrated has no pose and no force until it is"
         const auto peer = kind.make();
         tell<void, int>(*peer, "fake_calibrate", 0);
         const auto device = open_peer(*peer);
-        CHECK(most_given(*device, *peer, 1.0) == 0.0);
+        CHECK(max_given(*device, *peer, 1.0) == 0.0);
         CHECK_FALSE(device->acquire(1e-3).valid);
         if (kind.driver == "force_dimension") CHECK(tell<int>(*peer, "fake_force_on") == 0);
         tell<void, int>(*peer, "fake_calibrate", 1);
@@ -140,7 +140,7 @@ TEST_CASE("a device that is not calibrated has no pose and no force until it is"
             device->commit({});
             return device->acquire(1e-3).valid;
         }));
-        CHECK(most_given(*device, *peer, 1.0) == 1.0);
+        CHECK(max_given(*device, *peer, 1.0) == 1.0);
         CHECK(tell<int>(*peer, "fake_forces_before_enable") == 0);
     }
 }
@@ -156,7 +156,7 @@ TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that
         CHECK_FALSE(device->info().actuates_torque);
         CHECK(device->opened().serial == "20-1234");
         for (int i = 0; i < 20; ++i) tell(*peer, "fake_warm");
-        CHECK(most_given(*device, *peer, 2.0) == 2.0);  // warm motors are no loss
+        CHECK(max_given(*device, *peer, 2.0) == 2.0);  // warm motors are no loss
         CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 200));
         CHECK(tell<int>(*peer, "fake_errors_left") == 0);
         CHECK(tell<int>(*peer, "fake_forces_before_enable") == 0);
@@ -177,7 +177,7 @@ TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one
         CHECK(device->is_capped());
         CHECK(device->info().max_force == 0.5);
         CHECK_FALSE(device->info().actuates_torque);
-        CHECK(most_given(*device, *peer, 5.0) == Approx(0.5));
+        CHECK(max_given(*device, *peer, 5.0) == Approx(0.5));
         opened = device->opened();
     }
     driver::confirm("test", opened);
@@ -189,7 +189,7 @@ TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one
     {
         const auto device = open_peer(*peer, driver::OpenMode::run, true);
         CHECK_FALSE(device->is_capped());
-        CHECK(most_given(*device, *peer, 5.0) == Approx(5.0));
+        CHECK(max_given(*device, *peer, 5.0) == Approx(5.0));
     }
     tell<void, int>(*peer, "fake_number", 4712);  // another one of the same kind
     CHECK(open_peer(*peer, driver::OpenMode::run, true)->is_capped());

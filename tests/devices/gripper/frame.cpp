@@ -109,7 +109,7 @@ TEST_CASE("of 100 000 broken frames none gets through, and the good ones between
         feed(broken);
         if (n % 10 != 9) continue;
         // Long enough a pause that what is left of a broken frame cannot swallow the good one.
-        feed(std::vector<std::uint8_t>(gripper::most_payload + gripper::frame_overhead, 0));
+        feed(std::vector<std::uint8_t>(gripper::max_payload + gripper::frame_overhead, 0));
         feed(bytes_of(gripper::pack(sample(n % 5000), static_cast<std::uint16_t>(n % 5000))));
         ++good_sent;
     }

@@ -94,7 +94,7 @@ private:
     std::thread thread_;
 };
 
-double most_after(std::int64_t ns) {
+double max_after(std::int64_t ns) {
     double most = 0.0;
     for (const Given& one : given)
         if (one.ns > ns) most = std::max(most, one.newton);
@@ -118,7 +118,7 @@ TEST_CASE("an engine that falls silent leaves no force after 20 ms, however late
         clock.set_lateness(very_late);
         rig.commit(4.0);
         sleep_for(60 * ms);
-        if (VirtualClock::is_virtual()) CHECK(most_after(rig.last_commit_ns + 20 * ms) == 0.0);
+        if (VirtualClock::is_virtual()) CHECK(max_after(rig.last_commit_ns + 20 * ms) == 0.0);
         const auto silent = std::ranges::upper_bound(given, rig.last_commit_ns, {}, &Given::ns);
         CHECK(std::ranges::is_sorted(silent, given.end(), std::ranges::greater{}, &Given::newton));
     }
@@ -134,10 +134,10 @@ TEST_CASE("an engine that was silent for a moment gives no force without small o
         sleep_for(50 * ms);
         const std::int64_t gone = boot_ns();
         rig.tick(100, 4.0);
-        CHECK(most_after(gone) == 0.0);
+        CHECK(max_after(gone) == 0.0);
         rig.tick(10, 0.0);
         rig.tick(10, 4.0);
-        CHECK(most_after(gone) == 4.0);
+        CHECK(max_after(gone) == 4.0);
     }
 }
 
@@ -154,9 +154,9 @@ TEST_CASE("forces from before a suspension, or from before the machine stood sti
         const std::int64_t back = boot_ns();
         sleep_for(5 * ms);
         rig.tick(100, 4.0);
-        CHECK(most_after(back) == 0.0);
+        CHECK(max_after(back) == 0.0);
         rig.tick(10, 0.0);
         rig.tick(10, 4.0);
-        CHECK(most_after(back) == 4.0);
+        CHECK(max_after(back) == 4.0);
     }
 }

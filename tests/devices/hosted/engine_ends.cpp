@@ -67,7 +67,7 @@ TEST_CASE("an engine that is stopped leaves no force after 20 ms, and the device
     CHECK(host.log->last_force_ns() - stopped <= 20 * ms);
     CHECK_FALSE(host.log->is_closed());
     CHECK(wait_until([&] { return host.log->is_closed(); }, 3'000));
-    CHECK(host.log->most_after(stopped + 20 * ms) == 0.0);
+    CHECK(host.log->max_after(stopped + 20 * ms) == 0.0);
     engine.end(SIGKILL);
     CHECK(exit_code_of(host.log->process()) == 0);
     CHECK(host.leaves_nothing());
@@ -83,7 +83,7 @@ TEST_CASE("an engine that was stopped for a moment gives no force without small 
     const std::uint64_t count = host.log->count();
     engine.signal(SIGCONT);
     CHECK(wait_until([&] { return host.log->count() > count + 400; }));
-    CHECK(host.log->most_after(gone) == 0.0);
+    CHECK(host.log->max_after(gone) == 0.0);
     CHECK_FALSE(host.log->is_closed());
     engine.end(SIGKILL);
     CHECK(exit_code_of(host.log->process()) == 0);

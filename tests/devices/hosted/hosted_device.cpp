@@ -110,7 +110,7 @@ TEST_CASE("a sample that is no pose is not valid, and a force that is no number 
     CHECK(wait_until(commit_nan));
     const std::int64_t from = boot_ns();
     CHECK_FALSE(wait_until([&] { return !commit_nan(); }, 50));
-    CHECK(host.log->most_after(from) == 0.0);
+    CHECK(host.log->max_after(from) == 0.0);
     for (const ForceLog::Entry& entry : host.log->entries()) REQUIRE(std::isfinite(entry.force));
 }
 

@@ -136,13 +136,13 @@ TEST_CASE("a server that too many connect to hangs up on the rest, and goes on t
     const auto server = TransformServer::at("127.0.0.1", 0);
     const auto message = openigtlink::transform_message("Needle", at(0.1), 0.0);
     std::vector<int> files;
-    for (std::size_t i = 0; i < TransformServer::most_clients + 8; ++i) {
+    for (std::size_t i = 0; i < TransformServer::max_clients + 8; ++i) {
         files.push_back(connected(server->port()));
         server->send(message);
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
         std::uint8_t bytes[4096];
-        CHECK((::recv(files[i], bytes, sizeof bytes, 0) > 0) == (i < TransformServer::most_clients));
+        CHECK((::recv(files[i], bytes, sizeof bytes, 0) > 0) == (i < TransformServer::max_clients));
         ::close(files[i]);
     }
 }

@@ -112,7 +112,7 @@ TEST_CASE("sampling refuses what it cannot do and gives nothing where nothing is
     CHECK_THROWS_AS(contact::sample_surface(grid, {.spacing = 0.0}), Error);
     CHECK_THROWS_AS(contact::sample_surface(grid, {.spacing = -1.0}), Error);
     CHECK_THROWS_AS(contact::sample_surface(grid, {.spacing = 1e-7}), Error);
-    CHECK_THROWS_AS(contact::sample_surface(grid, {.spacing = 0.5e-3, .most_points = 10}), Error);
+    CHECK_THROWS_AS(contact::sample_surface(grid, {.spacing = 0.5e-3, .max_points = 10}), Error);
     CHECK(contact::sample_surface(geometry::TriangleSurface{}, {}).empty());
     CHECK(contact::sample_surface(
               contact::sample_voxmap(contact::centred_layout(8, 1e-3), [](const Vec3&) { return 1.0; }).grid, {})

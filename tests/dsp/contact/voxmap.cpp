@@ -77,13 +77,13 @@ TEST_CASE("nothing within a radius reads less than the bound that culling uses")
         const double radius = 0.006 * random.uniform(8 * n + 3);
         const Vec3 q = p + radius * random.uniform(8 * n + 7) * glm::normalize(Vec3(u(4), u(5), u(6)));
         for (const contact::Voxmap* map : {&exact, &chamfer}) {
-            const double least = map->least_within(p, radius);
+            const double least = map->min_within(p, radius);
             CHECK(least <= map->sample(q).value);
             CHECK(least <= map->smooth_sample(q).value);
         }
         // And for a true distance it is worth something: within 1.13 times the radius and three cells of the value.
         const volume::Sample here = plain.sample(p);
-        if (here.inside) CHECK(plain.least_within(p, radius) > here.value - 1.13 * radius - 3.0e-3);
+        if (here.inside) CHECK(plain.min_within(p, radius) > here.value - 1.13 * radius - 3.0e-3);
     }
 }
 

@@ -51,7 +51,7 @@ Wrench along_x(double force) { return {{force, 0.0, 0.0}, {}}; }
 /// A hand that follows x(t) against a spring beyond x = 0; the samples pass through `seen`. Returns the largest part of
 /// the spring's force that the cap has taken, N.
 template <class Motion, class Seen>
-double most_taken(double stiffness, double seconds, double resolution, Motion&& motion, Seen&& seen) {
+double max_taken(double stiffness, double seconds, double resolution, Motion&& motion, Seen&& seen) {
     control::EnergyCap cap = made(resolution);
     Wrench committed;
     double most = 0.0;
@@ -163,12 +163,12 @@ TEST_CASE("a hand that rests on a spring feels the whole spring, whatever the en
                 return quantised(x, step) +
                        (n > 300 ? step * static_cast<double>(random.bits(static_cast<std::uint64_t>(n)) % 2) : 0.0);
             };
-            CHECK(most_taken(stiffness, 60.0, step, press, flicker) == 0.0);
+            CHECK(max_taken(stiffness, 60.0, step, press, flicker) == 0.0);
             // A trembling hand: 50 µm at 9 Hz.
             const auto tremble = [](double t) {
                 return 0.7e-3 * std::min(1.0, t / 0.3) + 50e-6 * std::sin(2.0 * std::numbers::pi * 9.0 * t);
             };
-            CHECK(most_taken(stiffness, 60.0, step, tremble, [&](double x, int) { return quantised(x, step); }) == 0.0);
+            CHECK(max_taken(stiffness, 60.0, step, tremble, [&](double x, int) { return quantised(x, step); }) == 0.0);
         }
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("a slow press, withdrawal and second press follow the spring") {
             const double depth = 0.6e-3 - 0.4e-3 * std::cos(2.0 * std::numbers::pi * t);
             return t < 1.0 ? 0.2e-3 * t - 0.1e-3 : t < 5.0 ? depth - 0.1e-3 : 0.1e-3 - 1e-3 * (t - 5.0);
         };
-        const double taken = most_taken(2e3, 8.0, step, motion, [&](double x, int) { return quantised(x, step); });
+        const double taken = max_taken(2e3, 8.0, step, motion, [&](double x, int) { return quantised(x, step); });
         INFO(step * 1e6 << " µm");
         CHECK(taken <= 4.0 * 2e3 * step);
     }

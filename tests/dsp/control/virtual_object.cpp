@@ -99,7 +99,7 @@ TEST_CASE("a one-sided object is met and left within a period, exactly") {
 TEST_CASE("a table is followed in, stands still, and is followed out: the loop encloses what the object keeps") {
     const control::DeflectionTable foam{{-1.0, 0.0, 1.0, 3.0}, {-1e-3, 0.0, 2e-3, 4e-3}, {-0.5e-3, 1e-3, 3e-3, 4e-3}};
     REQUIRE(foam.fault().empty());
-    CHECK(foam.least_stiffness() == Approx(1.0 / 2e-3));
+    CHECK(foam.min_stiffness() == Approx(1.0 / 2e-3));
     control::VirtualObject object = make({.kind = control::ObjectKind::table, .table = &foam});
     CHECK(object.step(0.5) == Approx(1e-3));
     CHECK(object.step(3.0) == Approx(4e-3));

@@ -39,7 +39,7 @@ struct Swing {
 };
 
 /// A handle of 4e-4 kg·m² that turns at 10 rad/s into a torsion spring whose torque comes `delay` ticks late.
-Swing on_a_late_spring(double stiffness, int delay, bool control, double most_damping = 0.02) {
+Swing on_a_late_spring(double stiffness, int delay, bool control, double max_damping = 0.02) {
     coupling::PassivityObserver observer;
     constexpr double inertia = 4e-4, start = 10.0;
     double angle = 0.0, w = start;
@@ -55,7 +55,7 @@ Swing on_a_late_spring(double stiffness, int delay, bool control, double most_da
         seen[0] = angle;
         const Wrench spring{{}, {0.0, -stiffness * seen.back(), 0.0}};
         const Pose hand{{}, rotation_by({0.0, angle, 0.0})};
-        const auto now = observer(spring, hand, 1e-3, control, {.angular_damping = most_damping});
+        const auto now = observer(spring, hand, 1e-3, control, {.angular_damping = max_damping});
         torque = now.wrench;
         swing.least = std::min(swing.least, now.energy);
         swing.ratio = std::max(swing.ratio, w * w / (start * start));
@@ -79,9 +79,9 @@ TEST_CASE("a torsion spring that comes late gains energy without bound, and none
     for (const int delay : {1, 3}) {
         const Swing free = on_a_late_spring(3.0, delay, false);
         CHECK(free.ratio > 1e4);
-        for (const double most_damping : {0.0, 0.02, 0.1}) {
-            INFO(delay << " ticks, " << most_damping << " N m s/rad");
-            const Swing braked = on_a_late_spring(3.0, delay, true, most_damping);
+        for (const double max_damping : {0.0, 0.02, 0.1}) {
+            INFO(delay << " ticks, " << max_damping << " N m s/rad");
+            const Swing braked = on_a_late_spring(3.0, delay, true, max_damping);
             CHECK(braked.ratio < 1.05);
             CHECK(braked.least > -1e-3);
         }

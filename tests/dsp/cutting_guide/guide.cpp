@@ -38,7 +38,7 @@ void check_guide(unsigned seed, int segments) {
     const Seat seat =
         seat_of(made.surface, bone, glm::normalize(design.removal), design.settings.offset, 0.3 * mm, run_in_turn);
     CHECK(seat.is_path_free);
-    CHECK(seat.least_distance > design.settings.offset - 0.1 * mm);
+    CHECK(seat.min_distance > design.settings.offset - 0.1 * mm);
     CHECK(seat.contact_share() > 0.5);
 }
 
@@ -151,9 +151,9 @@ TEST_CASE("a smooth shaft does not hold a guide along itself and a ball does not
     const geometry::TriangleTree bone(shaft);
     const Seat seat = seat_of(sleeve, bone, Vec3(1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, run_in_turn);
     CHECK(seat.contact_share() > 0.99);
-    CHECK(seat.play == Approx(most_play));
+    CHECK(seat.play == Approx(max_play));
     CHECK(std::abs(seat.play_direction.z) > 0.99);
-    CHECK(seat.least_distance == Approx(0.3 * mm).margin(0.02 * mm));
+    CHECK(seat.min_distance == Approx(0.3 * mm).margin(0.02 * mm));
     CHECK(seat.is_path_free);
     // Into the bone nothing can be taken off.
     CHECK(!seat_of(sleeve, bone, Vec3(-1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, run_in_turn).is_path_free);

@@ -144,7 +144,7 @@ TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels le
     struct Hardship {
         const char* name;
         BarOptions left, right;
-        double most_error;
+        double max_error;
     };
     const std::vector<Hardship> hardships{
         {"a quarter chipped", {.chipped = 0.25}, {}, 0.3 * mm},
@@ -158,7 +158,7 @@ TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels le
         const fit::Fit fit =
             fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
         INFO(h.name << ": " << error_of(a, fit.pose) / mm << " mm, " << fit::name_of(fit.verdict));
-        CHECK(error_of(a, fit.pose) < h.most_error);
+        CHECK(error_of(a, fit.pose) < h.max_error);
     }
 }
 

@@ -136,7 +136,7 @@ TEST_CASE("dsp: a face on either side of a thin plate is pulled to its own side 
 TEST_CASE("dsp: more faces than there is room for are an error, and hardly any paint fits nothing") {
     const std::vector<fit::FragmentSurface> surfaces{surface_of(left_half()), surface_of(right_half())};
     fit::MatcherSettings one_face;
-    one_face.most_faces = 1;
+    one_face.max_faces = 1;
     CHECK_THROWS_AS(fit::FragmentMatcher(surfaces, one_face), Error);
     Half dotted = left_half();
     std::size_t painted = 0;

@@ -93,7 +93,7 @@ TEST_CASE("pieces that share a part of a course get parts that follow each other
 TEST_CASE("a long pedicle and all spans have no more points than asked") {
     const HeldFlap flap;
     AttachedVesselSettings settings = plain();
-    settings.most_points = 30;
+    settings.max_points = 30;
     const std::vector<Attachment> apart{{2, 100, 120}, {1, 150, 164}};
     const AttachedVessel vessel(flap.line, apart, flap.poses, settings);
     CHECK(vessel.rope().points().size() == 30);

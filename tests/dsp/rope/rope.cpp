@@ -222,7 +222,7 @@ TEST_CASE("the twist of a rope is the turn of its end, whole turns included") {
     std::vector<Vec3> flat;
     for (int n = 0; n <= 30; ++n) flat.emplace_back(0.03 * std::sin(0.1 * n), 0.03 * std::cos(0.1 * n), 0.0);
     CHECK(glm::length(transported(flat, Vec3(0.0, 0.0, 1.0)) - Vec3(0.0, 0.0, 1.0)) < 1e-12);
-    CHECK(least_bend_radius(flat) == Approx(30.0 * mm).epsilon(0.002));
+    CHECK(min_bend_radius(flat) == Approx(30.0 * mm).epsilon(0.002));
 }
 
 TEST_CASE("a hand that trembles where a rope gets taut feels no chatter") {
@@ -302,7 +302,7 @@ TEST_CASE("a rope's tick does not allocate and says what it did not solve") {
     CHECK(glm::length(rope.points()[64] - before) <= 4.0 * 0.5 * 0.05 / 64.0 + 1e-9);
     CHECK(seen.lag == Approx(glm::length(Vec3(1.0, 0.0, 0.0) - rope.points()[64])));
     RopeSettings lazy;
-    lazy.most_iterations = 1;
+    lazy.max_iterations = 1;
     Rope rough =
         rope_along({Vec3(-30.0 * mm, 0.0, 6.0 * mm), Vec3(30.0 * mm, 0.0, 6.0 * mm)}, 65, 0.03, material, lazy);
     rough.hold(0, Vec3(-30.0 * mm, 0.0, 0.0));

@@ -29,7 +29,7 @@ struct Milling {
         carve::CarveSettings settings;
         settings.kerf = 2.0 * radius;
         settings.tooth_pitch = saw::tooth_pitch;
-        settings.blade_length = (carve::CutFront::most_nodes - 1) * settings.tooth_pitch - settings.stroke;
+        settings.blade_length = (carve::CutFront::max_nodes - 1) * settings.tooth_pitch - settings.stroke;
         carver.prepare(bone, settings);
     }
 
@@ -96,7 +96,7 @@ TEST_CASE("a burr leaves a hole as wide as its ball, whatever its size and where
             carve::CarveSettings settings;
             settings.kerf = size;
             settings.tooth_pitch = saw::tooth_pitch;
-            settings.blade_length = (carve::CutFront::most_nodes - 1) * settings.tooth_pitch - settings.stroke;
+            settings.blade_length = (carve::CutFront::max_nodes - 1) * settings.tooth_pitch - settings.stroke;
             carver.prepare(*bone, settings);
             constexpr double length = 2e-3;
             const Vec3 start(0.0, 0.0, -0.5 * size - 0.5e-3);

@@ -72,7 +72,7 @@ struct Sawing {
         carve::CarveSettings settings;
         settings.kerf = shape.kerf;
         settings.tooth_pitch = shape.pitch;
-        settings.blade_length = (carve::CutFront::most_nodes - 1) * shape.pitch - settings.stroke;
+        settings.blade_length = (carve::CutFront::max_nodes - 1) * shape.pitch - settings.stroke;
         carver.prepare(bone, settings);
     }
 

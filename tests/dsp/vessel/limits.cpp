@@ -52,9 +52,9 @@ TEST_CASE("no radius of a track or of its narrowings is above the limit of the s
     for (const double limit : {3.0, 5.0, 9.0}) {
         CAPTURE(limit);
         vessel::TrackSettings settings;
-        settings.most_radius = limit * mm;
+        settings.max_radius = limit * mm;
         settings.branches = false;
-        const double most = settings.most_radius + 1e-12;
+        const double most = settings.max_radius + 1e-12;
         CHECK(widest(vessel::follow(helix.scan, helix.seed, settings).track) <= most);
         CHECK(widest(vessel::follow(narrow.scan, narrow.seed, settings).track) <= most);
         CHECK(widest(vessel::follow(arch.scan, arch.seed(), settings).track) <= most);
@@ -66,7 +66,7 @@ TEST_CASE("an arch of up to 25 mm radius is followed along its axis and doubted 
         CAPTURE(radius);
         const Arch arch(radius * mm, 0.2, 5);
         vessel::TrackSettings settings;
-        settings.most_radius = 32.0 * mm;
+        settings.max_radius = 32.0 * mm;
         settings.branches = false;
         const vessel::Followed found = vessel::follow(arch.scan, arch.seed(), settings);
         INFO(found.why);

@@ -17,7 +17,7 @@ TEST_CASE("of more faults than are kept the newest are told and all are counted"
         if (n < 99) guard.note(Fault::none, ForceState::on, 10 * n + 5, 0.0);
     }
     const auto faults = guard.faults();
-    REQUIRE(faults.size() == io::DeviceGuard::most_faults);
+    REQUIRE(faults.size() == io::DeviceGuard::max_faults);
     for (std::size_t i = 0; i < faults.size(); ++i) {
         const auto number = static_cast<std::int64_t>(i + 36);
         CHECK(faults[i].number == number);

@@ -14,7 +14,7 @@ constexpr double rounding = 1e-9;
 constexpr std::int64_t stale_ticks = 10, engage_ticks = 3;
 constexpr std::int64_t attended = 10'002;  // ms; times are sums of ticks
 constexpr double small = 0.5;  // N
-constexpr std::size_t most_left_out = 10;
+constexpr std::size_t max_left_out = 10;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void HandRules::note_lateness(const TickSeen& seen) {
     for (std::int64_t n = 0; n < seen.left_out; ++n) left_out_.push_back(seen.logical);
     while (!left_out_.empty() && left_out_.front() <= seen.logical - on_time) left_out_.pop_front();
     const bool is_late = seen.sample.taken || seen.sample.late;
-    if (is_late || seen.left_out > 2 || left_out_.size() > most_left_out) {
+    if (is_late || seen.left_out > 2 || left_out_.size() > max_left_out) {
         last_late_ = seen.logical;
         left_out_.clear();
     }
@@ -40,7 +40,7 @@ void HandRules::note_lateness(const TickSeen& seen) {
     is_let_ = false;
     needs_person_ = needs_person_ || static_cast<std::size_t>(std::ranges::count_if(returns_, [&](std::int64_t at) {
                                          return seen.logical - at < window;
-                                     })) >= most_returns;
+                                     })) >= max_returns;
 }
 
 void HandRules::note_device(const TickSeen& seen) {
@@ -69,7 +69,7 @@ void HandRules::note_loss(const TickSeen& seen) {
     must_engage_ = must_engage_ || is_held_ || is_bad_ || (is_late_ && !limits_.is_capped);
     if (!has_lost() && !is_held_) return;
     small_ticks_ = ramped_ = 0;
-    most_asked_ = 0.0;
+    max_asked_ = 0.0;
     if (seen.is_pressed && is_late_) {
         returns_.clear();
         needed_person_ = needed_person_ || needs_person_;
@@ -135,10 +135,10 @@ void HandRules::check_force(const TickSeen& seen, const DevicePort& port) {
     }
     if (!comes_in_) return;
     ++ramped_;
-    most_asked_ = std::max(most_asked_, std::min(std::abs(seen.asked), limits_.max_force));
+    max_asked_ = std::max(max_asked_, std::min(std::abs(seen.asked), limits_.max_force));
     const double share = static_cast<double>(ramped_) / ramp;
     if (share >= 1.0) comes_in_ = false;
-    else if (out > share * most_asked_ + rounding) breaks("a force comes in faster than over half a second");
+    else if (out > share * max_asked_ + rounding) breaks("a force comes in faster than over half a second");
 }
 
 void HandRules::give(double force, bool by_watchdog, std::int64_t ms) {

@@ -33,7 +33,7 @@ class HandRules {
 public:
     /// Forces are away because of lateness: they wait for 1 s on time and 0.5 s without force, and come in over 0.5 s.
     static constexpr std::int64_t on_time = 1000, quiet = 500, ramp = 500, window = 60'000, fade = 10;
-    static constexpr std::size_t most_returns = 3;
+    static constexpr std::size_t max_returns = 3;
 
     /// The node was made, or another has taken its place.
     void take_over(const HandLimits& limits);
@@ -65,7 +65,7 @@ private:
     bool was_by_watchdog_ = false, comes_in_ = false, needs_person_ = false, needed_person_ = false, is_let_ = false;
     std::int64_t last_late_ = -1, last_bad_ = 0, counter_ = -1, repeats_ = 0, small_ticks_ = 0, ramped_ = 0;
     std::int64_t quiet_ticks_ = 0, pressed_ = 0, zero_by_ms_ = 0, all_returns_ = 0, given_ms_ = 0;
-    double most_asked_ = 0.0, given_ = 0.0, wanted_ = 0.0, fades_from_ = 0.0;
+    double max_asked_ = 0.0, given_ = 0.0, wanted_ = 0.0, fades_from_ = 0.0;
     std::deque<std::int64_t> left_out_, returns_;
 };
 

@@ -16,7 +16,7 @@ ShakenCounts shake(std::uint64_t first, std::uint64_t past, double seconds) {
         CHECK(broken == "");
         all.add(hand.counts());
     }
-    CAPTURE(all.most_gained_J, all.most_allowed_J);
+    CAPTURE(all.max_gained_J, all.max_allowed_J);
     CHECK(all.late > 10);
     CHECK(all.pauses > 5);
     CHECK(all.edits > 5);

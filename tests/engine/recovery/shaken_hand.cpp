@@ -57,8 +57,8 @@ void ShakenCounts::add(const ShakenCounts& other) {
     late += other.late, pauses += other.pauses, edits += other.edits, device_faults += other.device_faults;
     not_finite += other.not_finite, presses += other.presses, returns += other.returns;
     waits_for_person += other.waits_for_person, full_forces += other.full_forces;
-    most_gained_J = std::max(most_gained_J, other.most_gained_J);
-    most_allowed_J = std::max(most_allowed_J, other.most_allowed_J);
+    max_gained_J = std::max(max_gained_J, other.max_gained_J);
+    max_allowed_J = std::max(max_allowed_J, other.max_allowed_J);
 }
 
 ShakenHand::ShakenHand(std::uint64_t seed) : seed_(seed) {
@@ -297,8 +297,8 @@ void ShakenHand::gain(double given_J) {
     taken_J_ = std::max(taken_J_, -gained_J_);
     const double bound = known_J + trusted_J + damped_J_ + allowed_J_ + of_taken * taken_J_;
     if (is_capped_) {
-        counts_.most_gained_J = std::max(counts_.most_gained_J, gained_J_);
-        counts_.most_allowed_J = std::max(counts_.most_allowed_J, gained_J_ - bound);
+        counts_.max_gained_J = std::max(counts_.max_gained_J, gained_J_);
+        counts_.max_allowed_J = std::max(counts_.max_allowed_J, gained_J_ - bound);
         if (gained_J_ > bound && broken_.empty())
             broken_ = fmt::format("a contact gave {:.3g} mJ more than it took, {:.3g} mJ are allowed", 1e3 * gained_J_,
                                   1e3 * bound);

@@ -31,8 +31,8 @@ struct OperatedMass {
 struct ShakenCounts {
     std::int64_t late = 0, pauses = 0, edits = 0, device_faults = 0, not_finite = 0, presses = 0;
     std::int64_t returns = 0, waits_for_person = 0, full_forces = 0;
-    double most_gained_J = 0.0;  ///< by one contact
-    double most_allowed_J = -1.0;  ///< the same, less what was allowed
+    double max_gained_J = 0.0;  ///< by one contact
+    double max_allowed_J = -1.0;  ///< the same, less what was allowed
 
     void add(const ShakenCounts& other);
 };

@@ -167,7 +167,7 @@ struct OnOneCore {
 
 struct CellOutcome {
     double before_N = 0.0, after_N = 0.0, to_zero_ms = 1e9, largest_step_N = 0.0;
-    double least_N = 1e9, first_zero_ms = 1e9;  ///< in the 200 ms after the fault
+    double min_N = 1e9, first_zero_ms = 1e9;  ///< in the 200 ms after the fault
     std::vector<std::string> faults;
 };
 
@@ -227,7 +227,7 @@ CellOutcome run_cell(const Cell& cell, bool is_alone) {
         if (given.ns >= fault_ns && given.ns < fault_ns + 200'000'000) {
             outcome.largest_step_N = std::max(outcome.largest_step_N, std::abs(given.force_N - last));
             last = given.force_N;
-            outcome.least_N = std::min(outcome.least_N, last);
+            outcome.min_N = std::min(outcome.min_N, last);
             if (last == 0.0) outcome.first_zero_ms = std::min(outcome.first_zero_ms, ms_between(fault_ns, given.ns));
         }
     for (const auto& slot : engine.host().devices)
@@ -241,7 +241,7 @@ bool holds(const Cell& cell, const CellOutcome& outcome) {
     switch (cell.demand) {
         case Demand::zero: return outcome.to_zero_ms <= cell.bound_ms;
         case Demand::steady: return outcome.faults.empty() && outcome.after_N > 0.95 * outcome.before_N;
-        case Demand::gentle: return outcome.least_N == 0.0 && outcome.largest_step_N < 0.5 * outcome.before_N;
+        case Demand::gentle: return outcome.min_N == 0.0 && outcome.largest_step_N < 0.5 * outcome.before_N;
         case Demand::cannot: return true;
     }
     return false;
@@ -250,7 +250,7 @@ bool holds(const Cell& cell, const CellOutcome& outcome) {
 std::string text_of(const Cell& cell, const CellOutcome& outcome) {
     if (cell.demand == Demand::cannot) return "cannot: " + cell.reason;
     const double zero = outcome.to_zero_ms;
-    if (cell.demand == Demand::gentle && outcome.least_N == 0.0)
+    if (cell.demand == Demand::gentle && outcome.min_N == 0.0)
         return fmt::format("{:.0f} ms, {:.2g} N a step", std::ceil(outcome.first_zero_ms), outcome.largest_step_N);
     if (outcome.faults.empty() && outcome.after_N > 0.95 * outcome.before_N) return "stays";
     if (zero >= 1e9) return fmt::format("{:.1f} N of {:.1f} N left", outcome.after_N, outcome.before_N);
@@ -427,7 +427,7 @@ double ms_after_end(const FaultPatch& patch, int signal, bool is_alone) {
     ::kill(process, SIGKILL);
     ::waitpid(process, nullptr, 0);
     wait_until([&] { return ::waitpid(-1, nullptr, WNOHANG) < 0; });
-    const bool had_force = host.log->most_after(0) > 1.0;
+    const bool had_force = host.log->max_after(0) > 1.0;
     const double ms_to_zero = static_cast<double>(host.log->last_force_ns() - ended->at_ns) * 1e-6;
     // A late tick may have taken the force away before.
     const bool had_force_then = ms_to_zero > -2.0;

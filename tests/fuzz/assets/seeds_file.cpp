@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::uint8_t> seed(layout.count(), 0);
     try {
         const auto labels = segmentation::seeds_of_text({reinterpret_cast<const char*>(data), size}, "seeds.json");
-        if (labels.size() < 2 || labels.size() > segmentation::most_labels) std::abort();
+        if (labels.size() < 2 || labels.size() > segmentation::max_labels) std::abort();
         for (const auto& label : labels)
             for (const auto& stroke : label.strokes) segmentation::paint(layout, node, stroke, 1, seed);
     } catch (const tactus::Error& error) {

@@ -450,13 +450,13 @@ void judge_path(const ForceTrial& trial, const ClosedPath& path, ForceOutcome& o
             outcome.failures.push_back(fmt::format("{:.3g} mJ on a closed path beyond sampling", outcome.work_J * 1e3));
     }
     if (!exception_of(trial, jumps).empty()) return;
-    const double least_jump = jump_force + jump_share * outcome.largest_N + residual;
-    const double least_turn = jump_torque + jump_share * outcome.largest_Nm + lever * residual;
+    const double min_jump = jump_force + jump_share * outcome.largest_N + residual;
+    const double min_turn = jump_torque + jump_share * outcome.largest_Nm + lever * residual;
     // The largest changes of the refined path, each in a tick of its own.
     std::vector<std::pair<double, int>> suspects;
     for (std::size_t k = 1; k + 1 < fine.forces.size(); ++k) {
         const Wrench change = fine.change(k);
-        const double excess = std::max(glm::length(change.force) / least_jump, glm::length(change.torque) / least_turn);
+        const double excess = std::max(glm::length(change.force) / min_jump, glm::length(change.torque) / min_turn);
         const int tick = static_cast<int>(k) / refined;
         if (excess <= 1.0) continue;
         if (!suspects.empty() && suspects.back().second == tick)
@@ -472,7 +472,7 @@ void judge_path(const ForceTrial& trial, const ClosedPath& path, ForceOutcome& o
         const std::size_t last = std::min(first + window * refined * refined - 1, finer.forces.size() - 2);
         for (std::size_t k = std::max<std::size_t>(first, 1); k <= last; ++k) {
             const double force = glm::length(finer.change(k).force), torque = glm::length(finer.change(k).torque);
-            const double now = std::max(force / least_jump, torque / least_turn);
+            const double now = std::max(force / min_jump, torque / min_turn);
             if (now <= 1.0 || now < 0.5 * excess) continue;
             // A powered tool breaks through: device_output bounds what is felt of it.
             if (finer.is_powered && glm::length(finer.forces[k + 1].force) < glm::length(finer.forces[k].force))

@@ -140,7 +140,7 @@ TEST_CASE("the fragments of a plan are in the picture, each in a colour of its o
     const auto direction = [](double r, double g, double b) {
         return glm::normalize(Vec3(r, g, b) - Vec3(0.8 * std::min({r, g, b})));
     };
-    std::array<int, coupling::Scene::most_objects> count{};
+    std::array<int, coupling::Scene::max_objects> count{};
     for (int y = 0; y < seen.height; ++y)
         for (int x = seen.width / 3; x < seen.width; ++x) {
             const std::size_t at = 3 * static_cast<std::size_t>(y * seen.width + x);

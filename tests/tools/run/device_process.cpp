@@ -145,7 +145,7 @@ TEST_CASE("a run with a device in a process of its own can be replayed to the bi
     CAPTURE(run.err);
     CHECK(run.code == 0);
     CHECK(watched.log->is_closed());
-    CHECK(watched.log->most_after(0) > 1.0);
+    CHECK(watched.log->max_after(0) > 1.0);
     CHECK(watched.folder.tactus("replay " + take).code == 0);
 }
 

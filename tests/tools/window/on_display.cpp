@@ -16,11 +16,11 @@
 
 namespace tactus::test {
 
-Outcome on(const VirtualDisplay& display, const Folder& folder, const std::string& arguments, int most_s) {
+Outcome on(const VirtualDisplay& display, const Folder& folder, const std::string& arguments, int max_s) {
     // Edits that a script does not save are kept there, not with the user's.
     const std::string command =
         fmt::format("cd {0} && {1} XDG_STATE_HOME={0}/state timeout {2} {3} {4} >stdout 2>stderr", folder.path.string(),
-                    display.environment(), most_s, tactus::test::command(), arguments);
+                    display.environment(), max_s, tactus::test::command(), arguments);
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
 }

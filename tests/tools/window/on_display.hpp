@@ -20,7 +20,7 @@
 namespace tactus::test {
 
 /// Runs the command in the folder on that display, for at most so long.
-Outcome on(const VirtualDisplay& display, const Folder& folder, const std::string& arguments, int most_s = 100);
+Outcome on(const VirtualDisplay& display, const Folder& folder, const std::string& arguments, int max_s = 100);
 
 /// Hash of what a run put out, and how often it was late, from its --json.
 std::pair<std::string, std::int64_t> hash_of(const VirtualDisplay& display, const Folder& folder,

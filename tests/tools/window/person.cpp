@@ -173,8 +173,8 @@ unsigned long Person::window(const std::string& title) const {
     return found;
 }
 
-bool Person::sees_window(const std::string& title, double most_s) const {
-    for (double waited = 0.0; waited < most_s; waited += 0.1) {
+bool Person::sees_window(const std::string& title, double max_s) const {
+    for (double waited = 0.0; waited < max_s; waited += 0.1) {
         if (window(title) != 0) return true;
         wait(0.1);
     }

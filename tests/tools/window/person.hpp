@@ -40,7 +40,7 @@ public:
     /// The whole screen.
     Picture look() const;
     /// Waits until a window of that title is there; false after that time.
-    bool sees_window(const std::string& title, double most_s) const;
+    bool sees_window(const std::string& title, double max_s) const;
     /// Gives the keyboard to the window of that title, or takes it from all.
     void give_keyboard(const std::string& title);
     void take_keyboard();

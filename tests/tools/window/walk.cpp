@@ -54,8 +54,8 @@ void Walk::start_script(const std::string& arguments, const std::string& script,
     REQUIRE(person.sees_window("Tactus", 60.0));
 }
 
-Outcome Walk::end(double most_s) {
-    if (done_.wait_for(std::chrono::duration<double>(most_s)) != std::future_status::ready) interrupt(folder.path);
+Outcome Walk::end(double max_s) {
+    if (done_.wait_for(std::chrono::duration<double>(max_s)) != std::future_status::ready) interrupt(folder.path);
     return done_.get();
 }
 
@@ -79,11 +79,11 @@ bool Walk::waits_while(const std::string& control) const {
 
 bool Walk::scroll_to(const std::string& control, const std::string& panel) {
     // First down to the end of the panel, then up to its beginning.
-    constexpr int most_turns = 40;
-    for (int turn = 0; turn < most_turns && !shows(control); ++turn) {
+    constexpr int max_turns = 40;
+    for (int turn = 0; turn < max_turns && !shows(control); ++turn) {
         const Spot over = eyes.spot(panel);
         person.move(0.5 * (over.left + over.right), 0.5 * (over.top + over.bottom));
-        const int wheel = turn < most_turns / 2 ? 5 : 4;
+        const int wheel = turn < max_turns / 2 ? 5 : 4;
         person.button(wheel, true);
         person.button(wheel, false);
         eyes.look_again();

@@ -42,7 +42,7 @@ public:
     /// The same with a script of its own, after the lines that give the window its size.
     void start_script(const std::string& arguments, const std::string& script, double seconds);
     /// Waits for the command's end; at most for so many seconds, then it is interrupted.
-    Outcome end(double most_s = 20.0);
+    Outcome end(double max_s = 20.0);
     /// Ends the command as Ctrl-C does.
     Outcome stop();
 

@@ -53,7 +53,7 @@ std::vector<double> broken_by_intact(const std::vector<contact::SurfacePoint>& p
 
 /// Labels the points inside the unbroken bone; returns its registration to the fragments.
 LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
-                             double least_area, std::string& note) {
+                             double min_area, std::string& note) {
     plan::ResultKey key("points inside of the unbroken bone", algorithm);
     key.add_file(settings.bone).add_file(settings.intact);
     if (!settings.main.empty()) key.add_file(settings.main);
@@ -66,7 +66,7 @@ LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const F
     while (!read.is_at_end())
         if (const double n = read.next(); n >= 0.0 && n < static_cast<double>(points.size()))
             broken[static_cast<std::size_t>(n)] = 1;
-    plan::label_broken(points, broken, least_area);
+    plan::label_broken(points, broken, min_area);
     return laid;
 }
 
@@ -74,10 +74,10 @@ bool is_painted(const contact::SurfacePoint& p) { return p.label == contact::sur
 
 /// Labels what faces at least one of the fragments.
 void propose_by_facing(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
-                       double least_area, std::string& note) {
+                       double min_area, std::string& note) {
     plan::FacingOptions options;
     options.reach = settings.reach;
-    options.least_area = least_area;
+    options.min_area = min_area;
     std::vector<char> faces(points.size(), 0);
     for (const std::filesystem::path& other : settings.facing) {
         plan::propose_facing(points, points_of_fragment(other, note), options);
@@ -92,23 +92,23 @@ void propose_by_facing(std::vector<contact::SurfacePoint>& points, const Fractur
 std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
                                   std::string& note) {
     std::optional<LaidIntact> laid;
-    double least_area = settings.least_area.value_or(20e-6);
+    double min_area = settings.min_area.value_or(20e-6);
     if (!settings.intact.empty()) {
-        least_area = settings.least_area.value_or(plan::IntactOptions{}.least_area);
-        laid = propose_by_intact(points, settings, least_area, note);
+        min_area = settings.min_area.value_or(plan::IntactOptions{}.min_area);
+        laid = propose_by_intact(points, settings, min_area, note);
         std::vector<contact::SurfacePoint> others;
         for (const std::filesystem::path& other : settings.facing)
             for (const contact::SurfacePoint& p : points_of_fragment(other, note)) others.push_back(p);
         if (!settings.facing.empty()) plan::keep_patches_near(points, others, settings.reach);
     } else if (!settings.facing.empty()) {
-        propose_by_facing(points, settings, least_area, note);
+        propose_by_facing(points, settings, min_area, note);
     } else {
         plan::ProposalOptions options;
         options.roughness = settings.roughness;
-        options.least_area = least_area;
+        options.min_area = min_area;
         plan::propose_fracture(points, options);
     }
-    plan::drop_small_faces(points, least_area);
+    plan::drop_small_faces(points, min_area);
     return laid;
 }
 

@@ -21,7 +21,7 @@ struct FractureSurfaceSettings {
     std::filesystem::path main;        ///< fragment to which the unbroken bone is registered first; empty: `bone`
     double roughness = 0.06;           ///< threshold of roughness: mean of 1 − cos between normals
     double reach = 10e-3;              ///< m, greatest distance to `facing` or `intact`
-    std::optional<double> least_area;  ///< m²; none: the default of each method
+    std::optional<double> min_area;  ///< m²; none: the default of each method
     bool mirror = false;               ///< `intact` is from the other side of the body
     bool correct = false;              ///< apply `paint` on top of the proposal
     bool whole = true;  ///< also load the bone's volume, for writing

@@ -24,7 +24,7 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr std::size_t most_parts = 20;
+constexpr std::size_t max_parts = 20;
 constexpr int finest_view = 220;  // samples along the longest side of the drawn surface
 
 std::array<double, 3> in_mm(const Vec3& v) { return {v.x * 1e3, v.y * 1e3, v.z * 1e3}; }
@@ -78,7 +78,7 @@ void inspect_ct(Inspection& found, volume::HuKind hu) {
     const auto iso = static_cast<float>(*found.threshold);
     const volume::Components components = volume::components_above(grid, iso);
     found.parts_in_all = components.voxels.size();
-    for (std::size_t n = 0; n < std::min(components.voxels.size(), most_parts); ++n) {
+    for (std::size_t n = 0; n < std::min(components.voxels.size(), max_parts); ++n) {
         if (components.voxels[n] * 1000 < components.voxels[0]) break;
         found.parts.push_back({fmt::format("part {}", n + 1),
                                static_cast<double>(components.voxels[n]) * voxel_mm3(grid),
@@ -120,7 +120,7 @@ void inspect_labels(Inspection& found, const volume::Grid& grid, const volume::S
         found.parts.push_back({name, static_cast<double>(s.voxels) * voxel_mm3(grid), bounds_of(s.box, grid)});
         volume::Grid mask = grid;
         for (float& value : mask.values) value = value == static_cast<float>(label) ? 1.0f : 0.0f;
-        if (found.surfaces.size() < most_parts) found.surfaces.push_back({view_surface(mask, 0.5f, 0.0f), colour});
+        if (found.surfaces.size() < max_parts) found.surfaces.push_back({view_surface(mask, 0.5f, 0.0f), colour});
     }
     found.parts_in_all = found.parts.size();
     found.is_labels = true;
@@ -222,7 +222,7 @@ Inspection inspect_mesh(const std::filesystem::path& path, const std::optional<s
                      [](const auto& a, const auto& b) { return a.volume_mm3 > b.volume_mm3; });
     found.parts_in_all = found.parts.size();
     for (std::size_t n = 0; n < found.parts.size(); ++n) found.parts[n].name = fmt::format("part {}", n + 1);
-    if (found.parts.size() > most_parts) found.parts.resize(most_parts);
+    if (found.parts.size() > max_parts) found.parts.resize(max_parts);
     found.notes.push_back(fmt::format("{} points, {} triangles; coordinates {}", mesh.vertices.size(),
                                       mesh.triangles.size(),
                                       given                         ? "in " + *given

@@ -25,7 +25,7 @@ std::optional<fit::RegistrationTarget> healthy_side(const plan::PlanState& state
 
 /// m, largest accepted median. The two sides of a body, and two scans, differ by about a millimetre; a misplaced or
 /// different bone differs by several.
-inline constexpr double most_intact_median = 2e-3;
+inline constexpr double max_intact_median = 2e-3;
 
 /// Count of the numbers of a registration of the unbroken bone, see IntactBone.
 inline constexpr std::size_t intact_numbers = 11 + 4 + 7;

@@ -56,7 +56,7 @@ FoundVessel follow_vessel(const VesselSettings& settings) {
 
     const double before = thread_seconds();
     vessel::TrackSettings track_settings = settings.track;
-    if (is_hu) track_settings.clip_below = least_hu_of_vessels;
+    if (is_hu) track_settings.clip_below = min_hu_of_vessels;
     result.found = vessel::follow(grid, settings.seed, track_settings);
     result.seconds = thread_seconds() - before;
     const vessel::Track& track = result.found.track;

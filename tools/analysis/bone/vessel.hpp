@@ -24,7 +24,7 @@ struct VesselSettings {
     std::filesystem::path straightened;  ///< if not empty: file of the image of the straightened branch of the seed
 };
 
-inline constexpr double least_hu_of_vessels = -150.0;  ///< below fat: lower HU count as this value
+inline constexpr double min_hu_of_vessels = -150.0;  ///< below fat: lower HU count as this value
 
 struct FoundVessel {
     vessel::Followed found;

@@ -31,7 +31,7 @@ using cutting_guide::GuideText;
 
 constexpr double wall_slack = 0.1 * mm;  // of measured walls against wanted ones
 constexpr double jaw_cover = 0.65;  // of the height of the jaw: a placeholder
-constexpr double most_label = 16;        // characters
+constexpr double max_label = 16;        // characters
 
 Vec3 turned(const Vec3& v, const Vec3& axis, double angle) { return glm::angleAxis(angle, axis) * v; }
 
@@ -75,11 +75,11 @@ void add_texts(GuideDesign& design, const std::string& title, const GuideChoice&
     const double height = design.settings.text_height;
     const Letters letters(height);
     std::string label = choice.label.empty() ? title : choice.label;
-    if (choice.label.empty() && label.size() > most_label) label.resize(static_cast<std::size_t>(most_label));
+    if (choice.label.empty() && label.size() > max_label) label.resize(static_cast<std::size_t>(max_label));
     for (const char c : label)
         if (c < ' ' || c > '~')
             throw Error(fmt::format("'{}' cannot be engraved: --label takes printable ASCII characters", label));
-    if (label.size() > most_label) throw Error(fmt::format("--label is longer than {:.0f} characters", most_label));
+    if (label.size() > max_label) throw Error(fmt::format("--label is longer than {:.0f} characters", max_label));
     design.text[0] = letters.text(label + "  " + side);
     design.text[1] = letters.text("RESEARCH");
     add_arrow(design.text[1], height, arrow_to_right);
@@ -232,7 +232,7 @@ void warn_clinically(PlannedGuide& guide, const FlapStudy& study, const GuideCho
     if (seat.play > 1.0 * mm)
         warn(
             "seat-play",
-            seat.play >= cutting_guide::most_play
+            seat.play >= cutting_guide::max_play
                 ? std::string("the bone does not hold the guide along one direction, as along a smooth shaft: mark its "
                               "place by a screw or a distance from the end of the bone")
                 : fmt::format("with a gap of {:.1f} mm the guide can move by {:.1f} mm on the bone",
@@ -297,9 +297,9 @@ void refuse(const PlannedGuide& guide, const mesh::MeshTopology& topology) {
         throw Error(fmt::format("bone is in the way of the guide along its approach, at {:.1f}, {:.1f}, {:.1f} mm",
                                 at.x, at.y, at.z));
     }
-    if (guide.seat.least_distance < set.offset - 0.1 * mm)
+    if (guide.seat.min_distance < set.offset - 0.1 * mm)
         throw Error(fmt::format("the guide comes within {:.2f} mm of the bone, closer than its offset",
-                                guide.seat.least_distance / mm));
+                                guide.seat.min_distance / mm));
     if (!(guide.seat.contact_area > 0.0)) throw Error("the guide does not touch the bone");
     for (std::size_t n = 0; n < guide.refits.size(); ++n) {
         const cutting_guide::SlotFit& fit = guide.refits[n];
@@ -405,7 +405,7 @@ file::Json guide_json(const PlannedGuide& guide) {
             {"seating",
              {{"free", guide.seat.is_path_free},
               {"removal", vector(glm::normalize(guide.design.removal), 1.0)},
-              {"least_distance_mm", guide.seat.least_distance / mm},
+              {"min_distance_mm", guide.seat.min_distance / mm},
               {"offset_mm", guide.design.settings.offset / mm}}},
             {"slots", slots},
             {"holes", holes},
@@ -414,7 +414,7 @@ file::Json guide_json(const PlannedGuide& guide) {
              {{"mm", guide.seat.play / mm},
               {"deg", guide.seat.play_angle / degree},
               {"direction", vector(guide.seat.play_direction, 1.0)},
-              {"is_held", guide.seat.play < cutting_guide::most_play}}},
+              {"is_held", guide.seat.play < cutting_guide::max_play}}},
             {"contact_share", guide.seat.contact_share()},
             {"overhang_share", guide.overhang},
             {"warnings", warnings}};

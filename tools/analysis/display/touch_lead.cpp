@@ -11,9 +11,9 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr double most_moved = 1e-3;  // m, greatest motion of the tip during a touch
-constexpr int most_tries = 3;
-constexpr std::size_t least_samples = 10;
+constexpr double max_moved = 1e-3;  // m, greatest motion of the tip during a touch
+constexpr int max_tries = 3;
+constexpr std::size_t min_samples = 10;
 
 Vec3 mean_of(std::span<const Vec3> places) {
     Vec3 sum(0.0);
@@ -41,15 +41,15 @@ bool TouchLead::is_part_done() const {
 }
 
 std::string TouchLead::fault_of(const Touched& touched) const {
-    if (touched.samples < least_samples)
+    if (touched.samples < min_samples)
         return fmt::format(
             "the device gave {} valid samples during the touch, but {} are needed; check that it is plugged in and "
             "sampled at {:.0f} Hz or more, and press again",
-            touched.samples == 0 ? "no" : std::to_string(touched.samples), least_samples,
-            static_cast<double>(least_samples) / touch_lasts);
+            touched.samples == 0 ? "no" : std::to_string(touched.samples), min_samples,
+            static_cast<double>(min_samples) / touch_lasts);
     if (is_tracked(steps_[due_]) && touched.tracked_samples == 0)
         return "the tracker did not see the marker during the touch; bring it into view and press again";
-    if (touched.moved > most_moved)
+    if (touched.moved > max_moved)
         return fmt::format(
             "the tip moved by {:.1f} mm during the touch; hold it still for a fifth of a second and press again",
             touched.moved * 1e3);
@@ -58,7 +58,7 @@ std::string TouchLead::fault_of(const Touched& touched) const {
 
 std::string TouchLead::take(const Touched& touched) {
     if (const std::string fault = fault_of(touched); !fault.empty()) {
-        if (++tries_[due_] >= most_tries) throw Error(fault);
+        if (++tries_[due_] >= max_tries) throw Error(fault);
         return fault;
     }
     display::Touch& step = steps_[due_];
@@ -70,7 +70,7 @@ std::string TouchLead::take(const Touched& touched) {
     try {
         check_(std::span(steps_).first(reached_));
     } catch (const display::BadTouch& bad) {
-        if (++tries_[bad.touch] >= most_tries) throw;
+        if (++tries_[bad.touch] >= max_tries) throw;
         due_ = bad.touch;
         return bad.message();
     }

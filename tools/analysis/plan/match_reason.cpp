@@ -14,7 +14,7 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr double least_facing = -0.2;  // as FragmentMatcher::near requires of the cosine between normals
+constexpr double min_facing = -0.2;  // as FragmentMatcher::near requires of the cosine between normals
 
 struct Face {
     int fragment = 0;
@@ -52,7 +52,7 @@ std::optional<Facing> nearest(const std::vector<Face>& mine, const std::vector<F
     for (const Face& a : mine)
         for (const Face& b : others) {
             const double away = glm::length(a.centre - b.centre);
-            if ((must_face && !(glm::dot(a.normal, b.normal) < least_facing)) || !(away < best.distance)) continue;
+            if ((must_face && !(glm::dot(a.normal, b.normal) < min_facing)) || !(away < best.distance)) continue;
             best = {a, b, away};
         }
     return best.distance < std::numeric_limits<double>::infinity() ? std::optional(best) : std::nullopt;
@@ -89,7 +89,7 @@ std::string not_found(const plan::CasePlan& plan, const PlanMatching& matching, 
         return fmt::format("none of its {} painted faces fits one of the {} others; check the paint", mine.size(),
                            others.size());
     const fit::MatcherSettings& settings = matching.settings();
-    const double turn = settings.most_turn * 180.0 / std::numbers::pi;
+    const double turn = settings.max_turn * 180.0 / std::numbers::pi;
     const auto facing = nearest(mine, others, true);
     if (!facing) {
         const auto close = nearest(mine, others, false);
@@ -127,16 +127,16 @@ std::string correct_the_paint(const plan::CasePlan& plan, const PlanMatching& ma
 std::string no_match(const fit::FitQuality& q, const fit::FitSettings& settings) {
     if (q.score < settings.least_score)
         return fmt::format("the faces do not match: the score is below {:.2f}", settings.least_score);
-    if (q.overlap < settings.least_overlap)
+    if (q.overlap < settings.min_overlap)
         return fmt::format("the faces lie on each other on less than {:.0f} mm², which any two surfaces do",
-                           settings.least_overlap * 1e6);
-    if (q.share < settings.least_share)
+                           settings.min_overlap * 1e6);
+    if (q.share < settings.min_share)
         return fmt::format("the faces lie on each other on {:.0f} % of the smaller one, which any two surfaces do",
                            q.share * 100.0);
-    if (q.rms < settings.most_rms * settings.sigma)
+    if (q.rms < settings.max_rms * settings.sigma)
         return fmt::format("only {:.0f} mm² of the painted fracture fit, which is chance", q.overlap * 1e6);
     return fmt::format("the faces do not match: their distances are spread over more than {:.2f} mm",
-                       settings.most_rms * settings.sigma * 1e3);
+                       settings.max_rms * settings.sigma * 1e3);
 }
 
 std::string doubt_of(const fit::KerfEstimate& kerf) {
@@ -190,7 +190,7 @@ std::string why_not_placed(const plan::CasePlan& plan, const PlanMatching& match
         case fit::FitVerdict::sliding:
             return "the faces are too smooth to hold it in one place; paint more of the fracture, or place it by hand";
         case fit::FitVerdict::ambiguous:
-            return fmt::format("another pose fits as well: the margin is below {:.2f}; {}", settings.least_margin,
+            return fmt::format("another pose fits as well: the margin is below {:.2f}; {}", settings.min_margin,
                                only == fit::Arrangement::none
                                    ? "name its partner at 'tactus plan snap', or paint more of the fracture"
                                    : "paint more of the fracture");
@@ -198,11 +198,11 @@ std::string why_not_placed(const plan::CasePlan& plan, const PlanMatching& match
             return fmt::format(
                 "{}; compare with the healthy side (--healthy), paint more of the fracture, or put it there with "
                 "'tactus plan snap --uncertain' and settle it with 'tactus plan accept'",
-                match.precision.far > settings.most_far
+                match.precision.far > settings.max_far
                     ? fmt::format("the {} of {:.0f} mm² {} the far end to ±{:.2f} mm only, and ±{:.2f} mm is needed",
                                   match.faces == 1 ? "face" : "faces, the best", match.quality.overlap * 1e6,
                                   match.faces == 1 ? "holds" : "hold", match.precision.far * 1e3,
-                                  settings.most_far * 1e3)
+                                  settings.max_far * 1e3)
                     : fmt::format("the faces agree on {:.0f} mm² only, as chipped ones do",
                                   match.quality.overlap * 1e6));
         case fit::FitVerdict::blocked: return fmt::format("the bones would lie in each other; {}", next);

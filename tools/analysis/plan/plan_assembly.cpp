@@ -134,7 +134,7 @@ private:
         fit::FragmentMatch made = matcher_.place(pair, parts_.poses(), stands);
         if (made.verdict == fit::FitVerdict::fit || made.verdict == fit::FitVerdict::blocked) {
             made.margin = std::min(made.margin, margin_to_others(edge));
-            if (made.margin < matching_.settings().fit.least_margin) made.verdict = fit::FitVerdict::ambiguous;
+            if (made.margin < matching_.settings().fit.min_margin) made.verdict = fit::FitVerdict::ambiguous;
         }
         const PlanMatch found = judge(made, stands);
         if (found.kerf) openings_[ordered(moving, made.partner)] = found.kerf->contour;

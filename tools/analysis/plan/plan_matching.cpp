@@ -56,7 +56,7 @@ PlanMatching::PlanMatching(std::vector<CaseFragment> fragments, const FitWay& wa
 void PlanMatching::make_matcher() {
     for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.map.grid});
     fit::MatcherSettings settings;
-    settings.most_points = 2000;
+    settings.max_points = 2000;
     settings.fit.kerf = way_.kerf.value_or(0.0);
     if (healthy_) settings.healthy.side = &*healthy_;
     matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces_, settings);
@@ -64,7 +64,7 @@ void PlanMatching::make_matcher() {
 
 bool PlanMatching::lie_in_each_other(int a, const Pose& at, int b, const Pose& there) const {
     return fit::lie_in_each_other(placed_bone(fragment(a), at), placed_bone(fragment(b), there),
-                                  settings().fit.most_penetration);
+                                  settings().fit.max_penetration);
 }
 
 double PlanMatching::overlap_volume(int a, const Pose& at, int b, const Pose& there) const {
@@ -209,7 +209,7 @@ std::vector<std::optional<double>> healthy_residuals(const plan::PlanState& stat
 
 std::vector<PlanGap> plan_gaps(const plan::CasePlan& plan, const std::filesystem::path& folder,
                                const std::optional<std::pair<int, int>>& pair) {
-    constexpr double least_depth = 5e-6;  // m
+    constexpr double min_depth = 5e-6;  // m
     plan::check_files(plan, folder);
     const plan::PlanState state = plan::state_of(plan);
     const std::vector<plan::PlanFragment> fragments = plan::fragments_of(plan, state);
@@ -227,7 +227,7 @@ std::vector<PlanGap> plan_gaps(const plan::CasePlan& plan, const std::filesystem
         const Pose &at = state.arrangement.pose(i), &bt = state.arrangement.pose(j);
         const fit::MutualGap gap = fit::mutual_gap(placed_bone(a, at), placed_bone(b, bt));
         // Surfaces that only touch share fractions of voxels, which are no overlap.
-        const bool is_inside = gap.deepest > least_depth;
+        const bool is_inside = gap.deepest > min_depth;
         const double overlap = is_inside ? fit::overlap_volume(a.map.grid, at, b.map, bt) : 0.0;
         // What lies deep inside of another does not face it.
         if (!pair && !(gap.facing > 5e-6) && !(overlap > 5e-9)) return;

@@ -129,7 +129,7 @@ private:
             return (*known)[7] > 0.0 ? std::optional((*known)[8]) : std::nullopt;
         const CaseFragment &one = loaded(a), &other = loaded(b);
         const bool lie = fit::lie_in_each_other(placed_bone(one, pose(a)), placed_bone(other, pose(b)),
-                                                fit::FitSettings{}.most_penetration);
+                                                fit::FitSettings{}.max_penetration);
         const double volume = lie ? fit::overlap_volume(one.map.grid, pose(a), other.map, pose(b)) : 0.0;
         std::vector<double> numbers(here.begin(), here.end());
         numbers.insert(numbers.end(), {lie ? 1.0 : 0.0, volume});

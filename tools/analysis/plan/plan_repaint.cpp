@@ -13,8 +13,8 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr double most_off = 0.5e-3;  // m: meshes become bones of voxels up to this size
-constexpr double most_share = 0.02;  // of the points; sharp edges are rounded by voxels
+constexpr double max_off = 0.5e-3;  // m: meshes become bones of voxels up to this size
+constexpr double max_share = 0.02;  // of the points; sharp edges are rounded by voxels
 
 double voxel_of(const CaseFragment& f) {
     const Vec3& h = f.map.grid.spacing;
@@ -24,7 +24,7 @@ double voxel_of(const CaseFragment& f) {
 /// Share of the points of `a` that do not lie on `b`.
 double share_off(const CaseFragment& a, const CaseFragment& b) {
     const fit::RegistrationTarget surface(b.bone.points);
-    const double limit = std::max({most_off, voxel_of(a), voxel_of(b)});
+    const double limit = std::max({max_off, voxel_of(a), voxel_of(b)});
     std::size_t off = 0;
     for (const contact::SurfacePoint& p : a.bone.points)
         if (surface.distance(p.position) > limit) ++off;
@@ -50,7 +50,7 @@ Repainted repaint(const plan::CasePlan& plan, const std::filesystem::path& folde
     if (made.is_compared) {
         const CaseFragment before = load_fragment(now, folder);
         const double off = std::max(share_off(bone, before), share_off(before, bone));
-        if (off > most_share)
+        if (off > max_share)
             throw Error(
                 fmt::format("{}: {:.0f} % of its surface does not lie on that of '{}': it is another bone, or "
                             "in another place; make a plan of it with 'tactus plan new'",

@@ -36,7 +36,7 @@ carve::CarveSettings carve_settings_for(const saw::SawShape& shape) {
     settings.kerf = shape.kerf;
     settings.tooth_pitch = shape.pitch;
     settings.stroke = shape.stroke;
-    settings.blade_length = (carve::CutFront::most_nodes - 1) * shape.pitch - shape.stroke;
+    settings.blade_length = (carve::CutFront::max_nodes - 1) * shape.pitch - shape.stroke;
     return settings;
 }
 

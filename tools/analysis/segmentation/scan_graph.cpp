@@ -18,7 +18,7 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr std::size_t most_bone_voxels = 20'000'000;
+constexpr std::size_t max_bone_voxels = 20'000'000;
 constexpr double common_for_metal = 2500.0;  // HU
 
 /// The samples from `low` to `high`, inclusive.
@@ -102,11 +102,11 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
             fmt::format("{}: there is no bone: no voxel reaches {:g}, the values are {:g} to {:g}; choose "
                         "--threshold",
                         file, out.threshold, static_cast<double>(range.low), static_cast<double>(range.high)));
-    if (voxels > most_bone_voxels)
+    if (voxels > max_bone_voxels)
         throw Error(
             fmt::format("{}: {} voxels reach {:g}, more than {}; choose a higher --threshold, or a smaller part "
                         "of the scan",
-                        file, voxels, out.threshold, most_bone_voxels));
+                        file, voxels, out.threshold, max_bone_voxels));
     if (out.metal_voxels > 0)
         out.notes.push_back(
             fmt::format("{} voxels of {:g} or more are taken for metal and have no label", out.metal_voxels, metal));

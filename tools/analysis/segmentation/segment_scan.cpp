@@ -24,7 +24,7 @@ namespace {
 
 /// Throws Error when painting would take minutes: many wide strokes.
 void check_work(const ScanGraph& scan, std::span<const segmentation::SeedLabel> labels, const std::string& file) {
-    constexpr double most_voxels = 5e9;
+    constexpr double max_voxels = 5e9;
     const Vec3& h = scan.box.spacing;
     double voxels = 0.0;
     for (const segmentation::SeedLabel& label : labels)
@@ -39,7 +39,7 @@ void check_work(const ScanGraph& scan, std::span<const segmentation::SeedLabel> 
                                     static_cast<double>(scan.box.size[static_cast<std::size_t>(axis)]));
                 voxels += box;
             }
-    if (voxels > most_voxels)
+    if (voxels > max_voxels)
         throw Error(
             fmt::format("{}: the strokes cover {:.0f} million voxels, counted each time; use fewer points, or "
                         "narrower strokes",

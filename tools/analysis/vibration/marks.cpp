@@ -43,8 +43,8 @@ Mark parse_mark(const std::string& text) {
         mark.label.resize(second);
         const auto [end, failure] = std::from_chars(count.data(), count.data() + count.size(), mark.harmonics);
         if (failure != std::errc{} || end != count.data() + count.size() || mark.harmonics < 1 ||
-            mark.harmonics > Mark::most_harmonics)
-            throw fail(fmt::format("the number of harmonics must be 1 to {}", Mark::most_harmonics));
+            mark.harmonics > Mark::max_harmonics)
+            throw fail(fmt::format("the number of harmonics must be 1 to {}", Mark::max_harmonics));
     }
     if (mark.label.empty()) throw fail("the label is missing");
     return mark;

@@ -16,7 +16,7 @@ struct Mark {
     std::string label;
     int harmonics = 1;  ///< number of multiples, including the first
 
-    static constexpr int most_harmonics = 50;
+    static constexpr int max_harmonics = 50;
 };
 
 /// Parses "118.9:BPFI" or "118.9 Hz:BPFI:5": frequency, in Hz without a unit; label; number of harmonics. Throws Error.

@@ -15,7 +15,7 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr double least_prominence_db = 6.0;  // noise alone reaches 5
+constexpr double min_prominence_db = 6.0;  // noise alone reaches 5
 
 RateRange rates_of(const signal::Rotation& rotation) {
     const double turns = rotation.last() - rotation.first();
@@ -100,7 +100,7 @@ signal::Rotation rotation_of_ridge(sound::RecordReader& reader, std::size_t chan
     });
     const signal::Ridge found = ridge.finish();
     out.prominence_db = found.prominence_db;
-    if (found.prominence_db < least_prominence_db)
+    if (found.prominence_db < min_prominence_db)
         throw Error("no rate can be tracked in the record; state it with --rate, or give a --tacho channel");
     return found.rotation(out.duration);
 }

@@ -14,7 +14,7 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr std::size_t most_peaks = 5;
+constexpr std::size_t max_peaks = 5;
 
 /// Slope of the phase over frequency between neighbouring bins, weighted by power and coherence: −∠ΣPxy[k+1] conj Pxy[k].
 double delay_of(const TwoChannels& found) {
@@ -48,7 +48,7 @@ std::vector<ResponsePeak> peaks_of(const TwoChannels& found) {
                          20.0 / std::log(10.0) * found.deviation[k]});
     }
     std::ranges::stable_sort(peaks, std::greater<>(), &ResponsePeak::level_db);
-    if (peaks.size() > most_peaks) peaks.resize(most_peaks);
+    if (peaks.size() > max_peaks) peaks.resize(max_peaks);
     std::ranges::sort(peaks, {}, &ResponsePeak::hz);
     return peaks;
 }

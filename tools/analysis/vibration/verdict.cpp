@@ -11,12 +11,12 @@ namespace tactus::analysis {
 namespace {
 
 constexpr double coherent = 0.5;
-constexpr double most_course_db = 3.0;  // rms of the level difference over time of what are copies
+constexpr double max_course_db = 3.0;  // rms of the level difference over time of what are copies
 
-std::vector<signal::SpectralLine> stronger_than(const std::vector<signal::SpectralLine>& lines, double least_db) {
+std::vector<signal::SpectralLine> stronger_than(const std::vector<signal::SpectralLine>& lines, double min_db) {
     std::vector<signal::SpectralLine> out;
     for (const signal::SpectralLine& line : lines)
-        if (signal::level_db(line) >= least_db) out.push_back(line);
+        if (signal::level_db(line) >= min_db) out.push_back(line);
     return out;
 }
 
@@ -72,7 +72,7 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
     verdict.lowest = c.lowest;
     verdict.highest = high;
     if (c.course_db) {
-        add("course_db", c.course_db, most_course_db, false, "rms of the level difference over time, dB", high);
+        add("course_db", c.course_db, max_course_db, false, "rms of the level difference over time, dB", high);
         verdict.time = "course over time";
     } else if (c.statistics) {
         add("statistics", c.statistics->deviation, 1.0, false,

@@ -13,8 +13,8 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr std::size_t most_speeds = 60;  // rows against speed
-constexpr double least_change = 1.05;    // highest over lowest rate
+constexpr std::size_t max_speeds = 60;  // rows against speed
+constexpr double min_change = 1.05;    // highest over lowest rate
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 signal::WelchSettings welch_of(const WaterfallSettings& settings, const signal::OrderStream& stream, double rate,
@@ -54,10 +54,10 @@ double turn_at(const signal::Rotation& rotation, double time) {
 std::vector<WaterfallRow> by_rate(const std::vector<WaterfallRow>& rows) {
     double lowest = rows.front().rate, highest = lowest;
     for (const WaterfallRow& row : rows) lowest = std::min(lowest, row.rate), highest = std::max(highest, row.rate);
-    if (highest < least_change * lowest)
+    if (highest < min_change * lowest)
         throw Error(fmt::format("the rate hardly changes, {:.2f} to {:.2f} Hz: draw the waterfall --against time",
                                 lowest, highest));
-    const std::size_t ranges = std::clamp<std::size_t>(rows.size() / 2, 2, most_speeds);
+    const std::size_t ranges = std::clamp<std::size_t>(rows.size() / 2, 2, max_speeds);
     std::vector<WaterfallRow> out;
     for (std::size_t i = 0; i < ranges; ++i) {
         const double width = (highest - lowest) / static_cast<double>(ranges),

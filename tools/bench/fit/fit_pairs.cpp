@@ -112,7 +112,7 @@ public:
         std::vector<fit::FragmentSurface> surfaces;
         for (const Piece& p : pieces_) surfaces.push_back({p.points, &p.distance});
         fit::MatcherSettings settings;
-        settings.most_points = 1000;
+        settings.max_points = 1000;
         matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces, settings);
         stands_.assign(pieces_.size(), 0);
         for (const Piece& p : pieces_) maps_.push_back(contact::make_voxmap(p.distance));
@@ -206,16 +206,16 @@ private:
             trial.partner = j;
             const fit::FitSettings usual = matcher_->settings.fit;
             fit::FitSettings& s = matcher_->settings.fit;
-            s.least_score = s.least_margin = s.least_share = s.least_overlap = 0.0;
-            s.most_rms = 2.0;
-            s.most_far = std::numeric_limits<double>::infinity();
+            s.least_score = s.min_margin = s.min_share = s.min_overlap = 0.0;
+            s.max_rms = 2.0;
+            s.max_far = std::numeric_limits<double>::infinity();
             const fit::FragmentMatch loose = look(i, poses, is_global);
             s = usual;
-            s.most_far = std::numeric_limits<double>::infinity();
+            s.max_far = std::numeric_limits<double>::infinity();
             const fit::FragmentMatch unheld = look(i, poses, is_global);
             s = usual;
             // The limit changes nothing where it refuses nothing.
-            const bool is_refused = unheld.verdict == fit::FitVerdict::fit && unheld.precision.far > usual.most_far;
+            const bool is_refused = unheld.verdict == fit::FitVerdict::fit && unheld.precision.far > usual.max_far;
             const fit::FragmentMatch strict = is_refused ? look(i, poses, is_global) : unheld;
             trial.unheld = unheld.verdict;
             trial.held = unheld.precision.far;

@@ -32,7 +32,7 @@ struct PairTrial {
     double score = 0.0, margin = 0.0, share = 0.0, overlap = 0.0, rms = 0.0;  ///< of the loose one; m², m
     double error = -1.0;  ///< m, rms at the painted face, of the loose one; negative: the pair belongs nowhere
     double verdict_error = -1.0;  ///< the same of the other
-    /// With the thresholds of the program but for Acceptance::most_far.
+    /// With the thresholds of the program but for Acceptance::max_far.
     fit::FitVerdict unheld = fit::FitVerdict::no_match;
     double held = 0.0;  ///< m, FitPrecision::far of that fit
     double far_error = -1.0;  ///< m, where its fragment is farthest from the face; negative as above

@@ -74,7 +74,7 @@ std::vector<float> zero_where_wrong(const SeededCase& real, const std::vector<st
 
 /// One series of seedings: fixed ones have seeds 1 and on, unseen ones 1001 and on.
 SeriesResult run_series(const SeededCase& real, std::uint64_t first, const SegmentChoice& choice) {
-    constexpr int most_dabs = 20;
+    constexpr int max_dabs = 20;
     SeriesResult out;
     const auto seeds_of = [&](int n) {
         return painted_seeds(real, choice.dabs, Random{first + static_cast<std::uint64_t>(n)});
@@ -116,7 +116,7 @@ SeriesResult run_series(const SeededCase& real, std::uint64_t first, const Segme
         }
         walks = first_walks;
         int reached = dice >= 0.97 ? 0 : -1;
-        for (int dab = 1; dab <= most_dabs && (dab <= 3 || reached < 0); ++dab) {
+        for (int dab = 1; dab <= max_dabs && (dab <= 3 || reached < 0); ++dab) {
             if (!dab_largest(real, zero_where_wrong(real, segmentation::labels_of(walks)), seed)) break;
             walks = segmentation::random_walks(graph_of_seeds(real, seed), seed, real.labels, {}, &walks);
             dice = mean_dice(real, segmentation::labels_of(walks));
@@ -186,7 +186,7 @@ void print_formats(const Json& row) {
 }
 
 /// Most memory that the process has held since the last call, bytes; 0 where the system does not tell.
-double most_memory_since() {
+double max_memory_since() {
     double most = 0.0;
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -212,11 +212,11 @@ Json cost_row(int edge, int labels, bool quiet) {
         seed[grid.index(std::min(edge - 1, l * width + width / 2), (l * 37) % edge, (l * 53) % edge)] =
             static_cast<std::uint8_t>(l + 1);
     timespec wall{}, done_at{};
-    most_memory_since();
+    max_memory_since();
     clock_gettime(CLOCK_MONOTONIC, &wall);
     const double begin = process_seconds();
     const segmentation::Walks walks = segmentation::random_walks(graph, seed, labels, {}, nullptr, analysis::on_threads());
-    const double seconds = process_seconds() - begin, memory = most_memory_since();
+    const double seconds = process_seconds() - begin, memory = max_memory_since();
     clock_gettime(CLOCK_MONOTONIC, &done_at);
     const double elapsed =
         static_cast<double>(done_at.tv_sec - wall.tv_sec) + 1e-9 * static_cast<double>(done_at.tv_nsec - wall.tv_nsec);
@@ -233,7 +233,7 @@ Json cost_row(int edge, int labels, bool quiet) {
             {"iterations", walks.iterations},
             {"residual", walks.residual},
             {"ns_per_unknown", each},
-            {"most_memory_bytes", memory}};
+            {"max_memory_bytes", memory}};
 }
 
 }  // namespace

@@ -78,11 +78,11 @@ Lateness one_run(const LatenessChoice& choice, const fs::path& folder, bool has_
     }
     const Json summary = Json::parse(text);
     // Groups above work in blocks of samples, and are late by other measures.
-    constexpr double most_hz = 8000.0;
+    constexpr double max_hz = 8000.0;
     const Json* hand = nullptr;
     for (const Json& group : summary["groups"])
         if (const double rate = group["rate_hz"].get<double>();
-            rate <= most_hz && (!hand || rate > (*hand)["rate_hz"].get<double>()))
+            rate <= max_hz && (!hand || rate > (*hand)["rate_hz"].get<double>()))
             hand = &group;
     if (!hand) throw Error(fmt::format("'{}' has no group below 8 kHz", choice.patch));
     double lost = 0.0;

@@ -23,21 +23,21 @@ struct FractureSurfaceChoice {
     analysis::FractureSurfaceSettings settings;
     std::filesystem::path out;
     double reach = 10.0;               // mm
-    std::optional<double> least_area;  // mm²
+    std::optional<double> min_area;  // mm²
     bool json = false;
 };
 
 Json residual_json(const fit::Registration& r) { return {{"median_mm", r.median * 1e3}, {"p90_mm", r.p90 * 1e3}}; }
 
 bool is_doubtful(const analysis::FractureSurface& found) {
-    return found.intact && found.intact->on_main.median > analysis::most_intact_median;
+    return found.intact && found.intact->on_main.median > analysis::max_intact_median;
 }
 
 std::string doubt_words(const FractureSurfaceChoice& choice) {
     return fmt::format(
         "the unbroken bone lies more than {:.0f} mm away from half of the {}fragment: what is proposed is not its "
         "fracture; {}check that it is the same bone{}",
-        analysis::most_intact_median * 1e3, choice.settings.main.empty() ? "" : "main ",
+        analysis::max_intact_median * 1e3, choice.settings.main.empty() ? "" : "main ",
         choice.settings.main.empty() ? "name the largest fragment of the same scan with --main, and " : "",
         choice.settings.mirror ? "" : ", and --mirror if it is from the other side of the body");
 }
@@ -89,7 +89,7 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
                 fmt::format("{}: a fragment cannot face itself; name another one with --facing", other.string()));
     analysis::FractureSurfaceSettings settings = choice.settings;
     settings.reach = choice.reach * 1e-3;
-    if (choice.least_area) settings.least_area = *choice.least_area * 1e-6;
+    if (choice.min_area) settings.min_area = *choice.min_area * 1e-6;
     settings.whole = extension == ".vdb";
     const analysis::FractureSurface found = analysis::propose_fracture_surface(settings);
     if (!found.note.empty()) fmt::print(stderr, "note: {}\n", found.note);
@@ -137,7 +137,7 @@ Action declare_fracture_surface(VerbOptions& verb) {
              "roughness above which a point counts as broken: mean of 1 - cos of normals")
         .shows_default()
         .range(0.0, 1.0);
-    verb.add("--least-area", choice->least_area, "smallest patch, mm² (default: 20, with --intact 50)")
+    verb.add("--least-area", choice->min_area, "smallest patch, mm² (default: 20, with --intact 50)")
         .unit("mm^2")
         .range(0.0, 1e5);
     verb.flag("--json", choice->json, "as JSON");

@@ -29,7 +29,7 @@ struct VesselChoice {
     std::string seed, leg, tibia, fibula;
     std::vector<std::filesystem::path> out;
     std::filesystem::path straightened;
-    double least_mm = 0.4, most_mm = 20.0, most_length_mm = 2000.0;
+    double min_mm = 0.4, max_mm = 20.0, max_length_mm = 2000.0;
     std::optional<double> bone_above;
     bool trunk_only = false, json = false;
 };
@@ -185,12 +185,12 @@ int follow(const VesselChoice& given) {
     settings.seed = parse_place(choice.seed, "--seed");
     settings.leg = leg_of(choice);
     settings.out = choice.out;
-    settings.track.least_radius = choice.least_mm * 1e-3;
-    settings.track.most_radius = choice.most_mm * 1e-3;
-    settings.track.most_length = choice.most_length_mm * 1e-3;
+    settings.track.min_radius = choice.min_mm * 1e-3;
+    settings.track.max_radius = choice.max_mm * 1e-3;
+    settings.track.max_length = choice.max_length_mm * 1e-3;
     settings.track.exclude_above = choice.bone_above;
     settings.track.branches = !choice.trunk_only;
-    if (choice.least_mm >= choice.most_mm) throw Error("--min-radius must be below --max-radius");
+    if (choice.min_mm >= choice.max_mm) throw Error("--min-radius must be below --max-radius");
     settings.straightened = choice.straightened;
     if (!choice.straightened.empty() && choice.straightened.extension() != ".png")
         throw Error(choice.straightened.string() + ": the straightened view is a .png");
@@ -225,15 +225,15 @@ Action declare_vessel(VerbOptions& verb) {
              "centre line as .csv, .vtp or .mrk.json, or tubes as .stl or .ply; may be repeated")
         .one_each();
     verb.add("--straightened", choice->straightened, "a PNG of the seed's branch pulled straight");
-    verb.add("--min-radius", choice->least_mm, "least radius of a vessel, mm")
+    verb.add("--min-radius", choice->min_mm, "least radius of a vessel, mm")
         .unit("mm")
         .shows_default()
         .range(0.1, 20.0);
-    verb.add("--max-radius", choice->most_mm, "greatest radius of a vessel, mm")
+    verb.add("--max-radius", choice->max_mm, "greatest radius of a vessel, mm")
         .unit("mm")
         .shows_default()
         .range(0.2, 40.0);
-    verb.add("--max-length", choice->most_length_mm, "greatest length of a branch from its start, mm")
+    verb.add("--max-length", choice->max_length_mm, "greatest length of a branch from its start, mm")
         .unit("mm")
         .shows_default()
         .range(5.0, 10000.0);

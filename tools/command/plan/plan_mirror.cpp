@@ -55,13 +55,13 @@ void print_comparison(const std::string& fragment, const std::string& main, cons
 }
 
 /// A mirrored side that lies wrongly is no target: the plan does not take it, and nothing is compared with it.
-bool is_doubtful(const fit::MirrorFit& fit) { return fit.registration.median > analysis::most_intact_median; }
+bool is_doubtful(const fit::MirrorFit& fit) { return fit.registration.median > analysis::max_intact_median; }
 
 std::string doubt_words(const MirrorChoice& choice) {
     return fmt::format(
         "the mirrored side lies more than {:.0f} mm away from half of '{}', so that it is no target: name the "
         "largest fragment first, and check that {} is the same bone of the other side; the plan is unchanged",
-        analysis::most_intact_median * 1e3, choice.names[0], choice.healthy.string());
+        analysis::max_intact_median * 1e3, choice.names[0], choice.healthy.string());
 }
 
 Json json_of(const MirrorChoice& choice, const fit::MirrorFit& fit, const Json& others) {

@@ -38,7 +38,7 @@ std::vector<int> settled_fragments(const plan::CasePlan& plan, const std::vector
 }
 
 int settle(const SettleChoice& choice) {
-    constexpr int most_rounds = 4;
+    constexpr int max_rounds = 4;
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const std::vector<int> numbers = settled_fragments(plan, choice.names);
@@ -60,7 +60,7 @@ int settle(const SettleChoice& choice) {
     for (int pass = 0; pass < choice.passes; ++pass)
         for (const int n : numbers) settle_one(n);
     // A fragment that was settled before its partner may have lost its fit.
-    for (int round = 0; round < most_rounds; ++round)
+    for (int round = 0; round < max_rounds; ++round)
         for (const int n : held)
             if (!plan::state_of(plan).holds(n)) settle_one(n);
     const plan::PlanState state = plan::state_of(plan);

@@ -78,7 +78,7 @@ Json json_of(const plan::CasePlan& plan, const analysis::CaseWarnings& warnings)
         if (state.fits[static_cast<std::size_t>(n)]) fragment["fit"] = fit_json(state, n);
         json["fragments"].push_back(fragment);
     }
-    for (int g = 0; g < static_cast<int>(state.arrangement.most_groups()); ++g) {
+    for (int g = 0; g < static_cast<int>(state.arrangement.max_groups()); ++g) {
         if (!state.arrangement.exists(g)) continue;
         const int parent = state.arrangement.parent_of(g);
         json["groups"].push_back(

@@ -39,7 +39,7 @@ double rms_of(const AnalysedChannel& channel, const AnalysedFile& file) {
     return std::sqrt(sum * psd.df * (file.is_density ? 1.0 : 1.0 / psd.noise_bandwidth));
 }
 
-constexpr std::size_t most_cepstral_peaks = 5;
+constexpr std::size_t max_cepstral_peaks = 5;
 constexpr const char* quantities[] = {"acceleration", "velocity", "displacement"};
 
 Json number_or_null(double value) { return value > 0.0 ? Json(value) : Json(nullptr); }
@@ -118,7 +118,7 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
                                  {"db", decibels(b.power)},
                                  {"deviation_db", band_deviation(b, r.lines)}});
     for (const signal::SpectralLine& l : r.envelope) json["envelope"].push_back(line(l));
-    for (const signal::CepstralPeak& peak : signal::cepstral_peaks(r.cepstrum, most_cepstral_peaks))
+    for (const signal::CepstralPeak& peak : signal::cepstral_peaks(r.cepstrum, max_cepstral_peaks))
         json["cepstrum"].push_back({{"quefrency_s", peak.quefrency}, {"hz", peak.frequency()}, {"value", peak.value}});
     if (!r.filtered.empty()) json["filtered_bands"] = Json::array();
     for (const signal::FilteredBand& b : r.filtered)
@@ -273,7 +273,7 @@ std::string analysis_text(const AnalysedFile& file, const SpectrumWords& words) 
             text += '\n';
         }
         if (words.cepstrum) {
-            const std::vector<signal::CepstralPeak> peaks = signal::cepstral_peaks(r.cepstrum, most_cepstral_peaks);
+            const std::vector<signal::CepstralPeak> peaks = signal::cepstral_peaks(r.cepstrum, max_cepstral_peaks);
             text += peaks.empty() ? "    cepstrum: no family of lines" : "    cepstrum, ms (spacing):";
             for (const signal::CepstralPeak& peak : peaks)
                 fmt::format_to(out, " {:.2f} ({:.2f} Hz)", 1e3 * peak.quefrency, peak.frequency());

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double page_width = 595.0, page_height = 842.0, margin = 48.0;  // points; A4
 constexpr double inside = page_width - 2.0 * margin;
-constexpr double gutter = 12.0, mark_width = 10.0, caption_size = 8.0, least_size = 6.0;  // points
+constexpr double gutter = 12.0, mark_width = 10.0, caption_size = 8.0, min_size = 6.0;  // points
 constexpr double bold = 1.08;  // width of bold text over that of plain text
 
 /// WinAnsi, in which bytes from 160 to 255 are Latin-1; with ( ) and \ escaped.
@@ -305,7 +305,7 @@ private:
             fmt::format("q {:.2f} 0 0 {:.2f} {:.2f} {:.2f} cm /I{} Do Q\n", wide, high, left, low, images_.size() - 1);
         for (const render::PictureText& t : over.texts) {
             const std::string shown = ansi(t.text);
-            const double size = std::max(t.size * scale, least_size),
+            const double size = std::max(t.size * scale, min_size),
                          away = width_of(shown, size) * (t.anchor == 'm' ? 0.5 : 1.0);
             const double x = left + t.x * scale - (t.anchor == 's' ? 0.0 : away), y = top - t.y * scale;
             if (t.mark) square(*t.mark, x - 14.0 * scale, y, 10.0 * scale);

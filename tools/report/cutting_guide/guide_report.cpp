@@ -91,7 +91,7 @@ ReportTable guide_checks(const analysis::PlannedGuide& guide) {
         "0.3 mm BoneReconstructionPlanner; 0.5 mm over periosteum");
     add("faces on the bone that touch it", fmt::format("{:.0f} %", 100.0 * guide.seat.contact_share()), "checked");
     add("play on the bone",
-        guide.seat.play >= cutting_guide::most_play
+        guide.seat.play >= cutting_guide::max_play
             ? std::string("not held along one direction")
             : fmt::format("{:.1f} mm, {:.1f}°", guide.seat.play / mm, guide.seat.play_angle / degree),
         "at a gap of 0.3 mm, root of the mean square");

@@ -10,7 +10,7 @@ namespace {
 
 constexpr display::Colour mark_colour{0x7A, 0x3D, 0x9A};
 constexpr double letter = 5.6, row_height = 12.0;  // of a text of size 10
-constexpr std::size_t most_rows = 5;
+constexpr std::size_t max_rows = 5;
 
 /// Bytes that begin a character.
 std::size_t letters(const std::string& text) {
@@ -24,7 +24,7 @@ void draw_marks(display::Figure& figure, const MarkedArea& area, std::span<const
                 const std::function<double(double)>& x_of) {
     std::vector<analysis::MarkPlace> sorted(places.begin(), places.end());
     std::ranges::stable_sort(sorted, {}, &analysis::MarkPlace::frequency);
-    std::vector<double> taken(most_rows, area.x - 1e3);  // right end of the last name in each row
+    std::vector<double> taken(max_rows, area.x - 1e3);  // right end of the last name in each row
     for (const analysis::MarkPlace& place : sorted) {
         if (place.frequency < area.lowest || place.frequency > area.highest) continue;
         const double x = x_of(place.frequency);

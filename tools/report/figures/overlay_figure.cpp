@@ -25,7 +25,7 @@ constexpr std::array<display::Colour, 7> colours{{{0x00, 0x72, 0xB2},
                                                   {0x00, 0x00, 0x00}}};
 constexpr display::Colour ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80};
 constexpr double left = 70.0, width = 720.0, height = 320.0, envelope_height = 200.0, row = 16.0;
-static_assert(most_curves == 2 * colours.size());
+static_assert(max_curves == 2 * colours.size());
 
 struct Shown {
     SpectrumCurve curve;
@@ -48,11 +48,11 @@ std::vector<Shown> curves_of(std::span<const analysis::AnalysedFile> files) {
                 shown.push_back({{&channel.report.psd, analysis::level_reference(file.calibration), {}}, &file, &channel});
     }
     if (shown.empty()) throw Error("no record is long enough for a spectrum");
-    if (shown.size() > most_curves)
+    if (shown.size() > max_curves)
         throw Error(
             fmt::format("{} channels: one figure holds at most {}; choose with --channel or --column, or draw them "
                         "one by one with a folder for --plot",
-                        shown.size(), most_curves));
+                        shown.size(), max_curves));
     for (std::size_t i = 0; i < shown.size(); ++i) {
         shown[i].curve.colour = colours[i % colours.size()];
         shown[i].curve.dash = i < colours.size() ? 0.0 : 4.0;

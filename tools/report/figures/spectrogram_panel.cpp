@@ -24,8 +24,8 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
                       const SpectrogramStyle& style) {
     const double left = place.x, y = place.y, width = place.width, picture_height = place.height;
     const double lowest = style.lowest, highest = style.highest;
-    const int rows = style.rows, most_columns = style.columns;
-    const int columns = std::min(static_cast<int>(s.columns()), most_columns);
+    const int rows = style.rows, max_columns = style.columns;
+    const int columns = std::min(static_cast<int>(s.columns()), max_columns);
     if (columns == 0) return;
     // The maximum in each cell of the picture.
     std::vector<double> level(static_cast<std::size_t>(columns * rows), -300.0);

@@ -19,10 +19,10 @@ using PlottedBand = std::optional<std::pair<double, double>>;
 display::Figure draw_spectrum(const analysis::AnalysedFile& file, const PlottedBand& band = {});
 
 /// The curves that one figure can hold, told apart by colour and dashes.
-inline constexpr std::size_t most_curves = 14;
+inline constexpr std::size_t max_curves = 14;
 
 /// All channels of all records in one plot with one axis of levels, and their envelopes in a second one if available.
-/// Throws Error for more than `most_curves`, for records in different units, or with nothing in the band.
+/// Throws Error for more than `max_curves`, for records in different units, or with nothing in the band.
 display::Figure draw_overlay(std::span<const analysis::AnalysedFile> files, const PlottedBand& band = {});
 
 /// Resolves the default. Throws Error when `rate` has nothing in the band.

@@ -10,7 +10,7 @@ namespace tactus::report {
 
 namespace {
 
-constexpr int most_columns = 1600, margin = 6;
+constexpr int max_columns = 1600, margin = 6;
 using Pixel = std::array<std::uint8_t, 3>;
 constexpr Pixel edge{70, 170, 255}, lost{255, 150, 40};
 
@@ -39,7 +39,7 @@ private:
 void write_picture(const vessel::Straightened& cuts, double background, double contrast,
                    const std::filesystem::path& path) {
     const int zoom = std::clamp(900 / cuts.columns, 1, 6);
-    const int width = std::min(cuts.columns, most_columns);
+    const int width = std::min(cuts.columns, max_columns);
     const int strips = (cuts.columns + width - 1) / width;
     const int strip_height = 2 * (cuts.rows + margin);
     Page page(width, strips * strip_height, zoom);

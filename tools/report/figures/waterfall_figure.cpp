@@ -18,7 +18,7 @@ namespace {
 constexpr double left = 70.0, width = 560.0, height = 340.0, gap = 30.0, rate_width = 110.0, right = 60.0, each = 420.0;
 constexpr double depth = 60.0;  // dB
 constexpr display::Colour order_ink{0xC8, 0xCC, 0xD2};
-constexpr std::size_t most_rows = 150, most_columns = 220;  // cells of a picture
+constexpr std::size_t max_rows = 150, max_columns = 220;  // cells of a picture
 
 double place(const analysis::Waterfall& w, std::size_t row) {
     return w.settings.against_speed ? w.rows[row].rate : w.rows[row].time;
@@ -38,8 +38,8 @@ std::vector<double> edges_of(const analysis::Waterfall& w) {
 class Cells {
 public:
     Cells(const analysis::Waterfall& w, const analysis::LevelReference& reference)
-        : across(std::min(w.rows.front().rms.size(), most_columns)),
-          up(std::min(w.rows.size(), most_rows)),
+        : across(std::min(w.rows.front().rms.size(), max_columns)),
+          up(std::min(w.rows.size(), max_rows)),
           waterfall_(w) {
         for (std::size_t r = 0; r < up; ++r)
             for (std::size_t c = 0; c < across; ++c) {

@@ -20,23 +20,23 @@ constexpr double width = 250.0, height = 220.0, gap = 70.0, top = 50.0, least = 
 
 /// Axes of one device: damping linear, stiffness in N/mm logarithmic.
 struct Panel {
-    double x, y, most_damping, most_stiffness;
+    double x, y, max_damping, max_stiffness;
 
     display::FigurePoint at(double damping, double stiffness) const {
         const double n_mm = std::max(stiffness * 1e-3, least);
-        const double up = std::min(1.0, std::log(n_mm / least) / std::log(most_stiffness / least));
-        return {x + width * damping / most_damping, y + height * (1.0 - up)};
+        const double up = std::min(1.0, std::log(n_mm / least) / std::log(max_stiffness / least));
+        return {x + width * damping / max_damping, y + height * (1.0 - up)};
     }
 };
 
 void draw_axes(display::Figure& figure, const Panel& panel, const std::string& title) {
-    for (double v = least; v <= panel.most_stiffness * 1.001; v *= 10.0) {
+    for (double v = least; v <= panel.max_stiffness * 1.001; v *= 10.0) {
         const double at = panel.at(0.0, v * 1e3).y;
         figure.line({{panel.x, at}, {panel.x + width, at}}, grid, 0.8);
         figure.text({panel.x - 5.0, at + 3.5}, fmt::format("{:g}", v), 10.0, ink, display::TextAnchor::end);
     }
     for (int i = 0; i <= 4; ++i) {
-        const double v = panel.most_damping * i / 4.0, at = panel.at(v, 1.0).x;
+        const double v = panel.max_damping * i / 4.0, at = panel.at(v, 1.0).x;
         figure.line({{at, panel.y}, {at, panel.y + height}}, grid, 0.8);
         figure.text({at, panel.y + height + 13.0}, fmt::format("{:g}", v), 10.0, ink, display::TextAnchor::middle);
     }
@@ -72,21 +72,21 @@ void draw_curve(display::Figure& figure, const Panel& panel, const analysis::ZWi
 display::Figure draw_z_width(const std::vector<analysis::ZWidthCurve>& curves) {
     std::vector<std::string> devices;
     std::vector<double> rates;
-    double most_damping = 1e-3, most_stiffness = 0.1;
+    double max_damping = 1e-3, max_stiffness = 0.1;
     for (const analysis::ZWidthCurve& curve : curves) {
         if (std::ranges::find(devices, curve.device) == devices.end()) devices.push_back(curve.device);
         if (std::ranges::find(rates, curve.rate) == rates.end()) rates.push_back(curve.rate);
         for (const analysis::ZWidthPoint& point : curve.points) {
-            most_damping = std::max(most_damping, point.damping);
-            most_stiffness = std::max({most_stiffness, point.bound * 1e-3, point.simulated.stiffness * 1e-3});
+            max_damping = std::max(max_damping, point.damping);
+            max_stiffness = std::max({max_stiffness, point.bound * 1e-3, point.simulated.stiffness * 1e-3});
         }
     }
-    most_stiffness = std::pow(10.0, std::ceil(std::log10(most_stiffness)));
+    max_stiffness = std::pow(10.0, std::ceil(std::log10(max_stiffness)));
     const auto columns = static_cast<double>(std::max<std::size_t>(devices.size(), 1));
     display::Figure figure(gap * (columns + 1.0) + width * columns, top + height + 90.0);
     figure.text({gap, 22.0}, "Which walls a device bears", 14.0, ink, display::TextAnchor::start, true);
     for (std::size_t d = 0; d < devices.size(); ++d) {
-        const Panel panel{gap + (gap + width) * static_cast<double>(d), top, most_damping, most_stiffness};
+        const Panel panel{gap + (gap + width) * static_cast<double>(d), top, max_damping, max_stiffness};
         draw_axes(figure, panel, devices[d]);
         for (const analysis::ZWidthCurve& curve : curves) {
             if (curve.device != devices[d]) continue;
@@ -97,7 +97,7 @@ display::Figure draw_z_width(const std::vector<analysis::ZWidthCurve>& curves) {
             draw_curve(figure, panel, curve, colours[rate % colours.size()], is_late ? 4.0 : 0.0);
             const double friction = curve.points.empty() ? 0.0 : curve.points.front().friction;
             if (std::isfinite(friction) && friction > 0.0)
-                figure.line({panel.at(0.0, friction), panel.at(most_damping, friction)}, frame, 1.0, 1.5);
+                figure.line({panel.at(0.0, friction), panel.at(max_damping, friction)}, frame, 1.0, 1.5);
         }
     }
     double x = gap;

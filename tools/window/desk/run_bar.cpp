@@ -84,8 +84,8 @@ bool wants_faults = false;
 
 std::string faults_label(const RunStatus& status) {
     // Of a device the newest 64 are kept.
-    constexpr std::size_t most_kept = 64;
-    return fmt::format("{}{} fault{}###faults", status.faults.size(), status.faults.size() >= most_kept ? "+" : "",
+    constexpr std::size_t max_kept = 64;
+    return fmt::format("{}{} fault{}###faults", status.faults.size(), status.faults.size() >= max_kept ? "+" : "",
                        status.faults.size() > 1 ? "s" : "");
 }
 

@@ -49,7 +49,7 @@ std::optional<HandOfPatch> hand_of(const compile::Schedule& plan) {
 }
 
 double largest_force(const compile::Schedule& plan, const std::string& device) {
-    double most = most_of_device_N;
+    double most = max_of_device_N;
     for (const patch::PatchDevice& declared : plan.patch.devices)
         for (const OptionText& setting : declared.settings)
             if (declared.name == device && setting.name == "max_force") try {

@@ -19,7 +19,7 @@ struct HandOfPatch {
     bool moves_by_itself() const;
 };
 /// Of a hand on a simulated device whose table does not say it.
-inline constexpr double most_of_device_N = 20.0;
+inline constexpr double max_of_device_N = 20.0;
 /// The device that a node of a hand means; empty: that cannot be said.
 std::string device_of(const compile::Schedule& plan, const compile::ScheduleNode& node);
 /// The driver of a device; one that the patch does not declare can be named as well.

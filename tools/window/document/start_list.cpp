@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_found = 40;
+constexpr std::size_t max_found = 40;
 
 std::vector<fs::path> sorted_content(const fs::path& folder) {
     std::vector<fs::path> all;
@@ -51,9 +51,9 @@ void find_nearby(const fs::path& folder, int deep, StartList& into) {
         const bool is_folder = fs::is_directory(path, ignored) && !fs::is_symlink(path, ignored);
         const std::string name = path.filename().string();
         if (is_folder && is_take(path)) {
-            if (into.takes.size() < most_found) into.takes.push_back({name, folder.filename().string(), path, {}});
+            if (into.takes.size() < max_found) into.takes.push_back({name, folder.filename().string(), path, {}});
         } else if (is_folder && deep > 0) find_nearby(path, deep - 1, into);
-        else if (name.ends_with(".plan.json") && into.plans.size() < most_found)
+        else if (name.ends_with(".plan.json") && into.plans.size() < max_found)
             into.plans.push_back({name, folder.filename().string(), path, {}});
     }
 }

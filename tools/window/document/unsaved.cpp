@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int most_kept = 99;  // files per patch and folder
+constexpr int max_kept = 99;  // files per patch and folder
 
 /// Resolves a link to the file.
 fs::path true_path(const fs::path& patch) {
@@ -63,7 +63,7 @@ fs::path numbered(const fs::path& stem, int number) {
 
 /// Creates a new, empty file exclusively. Throws Error.
 fs::path reserve(const fs::path& stem) {
-    for (int number = 1; number <= most_kept; ++number) {
+    for (int number = 1; number <= max_kept; ++number) {
         const fs::path path = numbered(stem, number);
         const int handle = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (handle >= 0) {
@@ -72,7 +72,7 @@ fs::path reserve(const fs::path& stem) {
         }
         if (errno != EEXIST) throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
     }
-    throw Error(fmt::format("{}.toml: there are {} such files already", stem.string(), most_kept));
+    throw Error(fmt::format("{}.toml: there are {} such files already", stem.string(), max_kept));
 }
 
 fs::path keep_at(const fs::path& stem, std::string_view text) {
@@ -115,7 +115,7 @@ std::vector<fs::path> find_unsaved(const fs::path& patch) {
     const Stems stems = stems_of(patch);
     for (const auto& stem : {stems.beside, stems.state}) {
         if (!stem) continue;
-        for (int number = 1; number <= most_kept; ++number) {
+        for (int number = 1; number <= max_kept; ++number) {
             const fs::path path = numbered(*stem, number);
             std::error_code failure;
             // An empty file was reserved and never written.

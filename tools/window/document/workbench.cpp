@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_messages = 200;
+constexpr std::size_t max_messages = 200;
 
 std::string_view without_mark(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -61,7 +61,7 @@ RunChoice Workbench::choice() const {
 void Workbench::tell(std::string text, bool is_problem) {
     messages_.push_back({std::move(text), is_problem});
     ++told_;
-    if (messages_.size() > most_messages) messages_.pop_front();
+    if (messages_.size() > max_messages) messages_.pop_front();
 }
 
 Workbench::Judged Workbench::judge(std::string_view text) const {

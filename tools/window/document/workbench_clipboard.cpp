@@ -64,9 +64,9 @@ Workbench::Pasted Workbench::paste(const std::string& copied, patch::PatchPlace 
         return {};
     }
     // Each is an edit of the whole text.
-    constexpr std::size_t most_comments = 500;
-    if (comments.size() > most_comments) {
-        tell(fmt::format("the clipboard holds {} comments; paste {} at most", comments.size(), most_comments), true);
+    constexpr std::size_t max_comments = 500;
+    if (comments.size() > max_comments) {
+        tell(fmt::format("the clipboard holds {} comments; paste {} at most", comments.size(), max_comments), true);
         return {};
     }
     std::map<std::string, std::string> names;

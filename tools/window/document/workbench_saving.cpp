@@ -177,8 +177,8 @@ void Workbench::keep_edits() noexcept {
 void Workbench::find_kept_edits() {
     std::vector<fs::path> all = find_unsaved(editor_->file());
     // An earlier new patch may have had another number.
-    constexpr int most_untitled = 9;
-    for (int i = 1; is_untitled() && i <= most_untitled; ++i) {
+    constexpr int max_untitled = 9;
+    for (int i = 1; is_untitled() && i <= max_untitled; ++i) {
         const fs::path other = untitled_file(i);
         std::error_code ignored;
         if (other == editor_->file() || fs::exists(other, ignored)) continue;

@@ -14,7 +14,7 @@ using file::Json;
 
 namespace {
 
-constexpr std::size_t most_recent = 20, most_layouts = 500, most_scans = 500;
+constexpr std::size_t max_recent = 20, max_layouts = 500, max_scans = 500;
 
 std::string name_of_file(const fs::path& path) {
     std::error_code ignored;
@@ -41,17 +41,17 @@ void WindowMemory::read() noexcept {
         Known known;
         if (const Json* recent = root.find("recent"))
             for (const Json& item : *recent)
-                if (known.recent.size() < most_recent) known.recent.push_back(item.as_text());
+                if (known.recent.size() < max_recent) known.recent.push_back(item.as_text());
         if (const Json* layouts = root.find("layouts"))
             for (const auto& [path, name] : layouts->items())
-                if (const auto layout = layout_of_name(name.as_text()); layout && known.layouts.size() < most_layouts)
+                if (const auto layout = layout_of_name(name.as_text()); layout && known.layouts.size() < max_layouts)
                     known.layouts[path] = *layout;
         if (const Json* scans = root.find("scans"))
             for (const auto& [plan, scan] : scans->items())
-                if (known.scans.size() < most_scans) known.scans[plan] = scan.as_text();
+                if (known.scans.size() < max_scans) known.scans[plan] = scan.as_text();
         if (const Json* borders = root.find("borders"))
             for (const auto& [path, text] : borders->items())
-                if (known.borders.size() < most_layouts) known.borders[path] = text.as_text();
+                if (known.borders.size() < max_layouts) known.borders[path] = text.as_text();
         known_ = std::move(known);
     } catch (const std::exception&) {
         // The memory of this window stays.
@@ -64,7 +64,7 @@ void WindowMemory::opened(const fs::path& what) {
     read();
     std::erase(known_.recent, path);
     known_.recent.insert(known_.recent.begin(), path);
-    if (known_.recent.size() > most_recent) known_.recent.resize(most_recent);
+    if (known_.recent.size() > max_recent) known_.recent.resize(max_recent);
     save();
 }
 
@@ -76,7 +76,7 @@ std::optional<Layout> WindowMemory::layout_of(const fs::path& patch) const {
 
 void WindowMemory::keep_layout(const fs::path& patch, Layout layout) {
     read();
-    if (known_.layouts.size() >= most_layouts) known_.layouts.clear();
+    if (known_.layouts.size() >= max_layouts) known_.layouts.clear();
     known_.layouts[name_of_file(patch)] = layout;
     save();
 }
@@ -88,7 +88,7 @@ fs::path WindowMemory::scan_of(const fs::path& plan) const {
 
 void WindowMemory::keep_scan(const fs::path& plan, const fs::path& scan) {
     read();
-    if (known_.scans.size() >= most_scans) known_.scans.clear();
+    if (known_.scans.size() >= max_scans) known_.scans.clear();
     known_.scans[name_of_file(plan)] = name_of_file(scan);
     save();
 }
@@ -100,7 +100,7 @@ std::string WindowMemory::borders_of(const fs::path& patch) const {
 
 void WindowMemory::keep_borders(const fs::path& patch, const std::string& borders) {
     read();
-    if (known_.borders.size() >= most_layouts) known_.borders.clear();
+    if (known_.borders.size() >= max_layouts) known_.borders.clear();
     known_.borders[name_of_file(patch)] = borders;
     save();
 }

@@ -9,7 +9,7 @@ namespace tactus::window {
 namespace {
 
 constexpr std::array<std::string_view, 3> names{"patch", "plan", "train"};
-constexpr double least_share = 0.15;
+constexpr double min_share = 0.15;
 
 using Columns = std::vector<LayoutColumn>;
 
@@ -45,7 +45,7 @@ template <class Item>
 void move(std::vector<Item>& items, std::size_t index, double by) {
     if (index + 1 >= items.size()) return;
     double &first = items[index].share, &second = items[index + 1].share;
-    const double both = first + second, least = std::min(least_share, 0.5 * both);
+    const double both = first + second, least = std::min(min_share, 0.5 * both);
     first = std::clamp(first + by, least, both - least);
     second = both - first;
 }

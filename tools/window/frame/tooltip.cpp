@@ -6,9 +6,9 @@
 namespace tactus::window {
 
 void show_tooltip(const std::string& text) {
-    constexpr float most_letters = 26.0f;  // of full width, about twice as many of usual text
+    constexpr float max_letters = 26.0f;  // of full width, about twice as many of usual text
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(most_letters * ImGui::GetFontSize());
+    ImGui::PushTextWrapPos(max_letters * ImGui::GetFontSize());
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();

@@ -42,9 +42,9 @@ double scale_of_screen(GLFWwindow* window) {
 Window::Library::Library() {
     glfwSetErrorCallback(keep_error);
     // An X server whose last window has just closed starts anew, and is not there for a moment.
-    constexpr int most_tries = 5;
+    constexpr int max_tries = 5;
     bool is_there = glfwInit() == GLFW_TRUE;
-    for (int tried = 1; !is_there && tried < most_tries && std::getenv("DISPLAY"); ++tried) {
+    for (int tried = 1; !is_there && tried < max_tries && std::getenv("DISPLAY"); ++tried) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
         is_there = glfwInit() == GLFW_TRUE;
     }

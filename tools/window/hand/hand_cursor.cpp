@@ -23,10 +23,10 @@ void HandCursor::turn(const Vec3& by, const HandPlace& place) {
 }
 
 void HandCursor::stay_near(const Pose& felt, double force_N) {
-    constexpr double least_force = 0.5;
+    constexpr double min_force = 0.5;
     const Vec3 away = wanted_.position - felt.position;
     const double far = glm::length(away);
-    if (force_N > least_force && far > longest_spring_m)
+    if (force_N > min_force && far > longest_spring_m)
         wanted_.position = felt.position + away * (longest_spring_m / far);
 }
 

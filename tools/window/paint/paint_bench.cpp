@@ -24,7 +24,7 @@ namespace {
 
 vessel::TrackSettings track_settings(const analysis::ScanGraph& scan) {
     vessel::TrackSettings settings;
-    if (scan.hu == volume::HuKind::calibrated) settings.clip_below = analysis::least_hu_of_vessels;
+    if (scan.hu == volume::HuKind::calibrated) settings.clip_below = analysis::min_hu_of_vessels;
     return settings;
 }
 

@@ -19,7 +19,7 @@ using segmentation::SeedLabel;
 
 namespace {
 
-constexpr std::size_t most_remembered = 500, most_points = 100'000;
+constexpr std::size_t max_remembered = 500, max_points = 100'000;
 
 std::string free_name(const Painting::Labels& labels) {
     for (std::size_t n = 1;; ++n) {
@@ -57,7 +57,7 @@ void Painting::begin(double radius, const Vec3& point, bool erases) {
 }
 
 void Painting::extend(const Vec3& point) {
-    if (!is_open_ || open_.points.size() >= most_points) return;
+    if (!is_open_ || open_.points.size() >= max_points) return;
     if (!segmentation::is_seed_place(point)) {
         is_open_ = false;
         return refuse("a stroke needs places within 100 m");
@@ -114,8 +114,8 @@ void Painting::drop_beside_bone(Labels& next) const {
 }
 
 bool Painting::add_label(const std::string& name) {
-    if (labels_.size() >= segmentation::most_labels) {
-        refuse(fmt::format("at most {} labels", segmentation::most_labels));
+    if (labels_.size() >= segmentation::max_labels) {
+        refuse(fmt::format("at most {} labels", segmentation::max_labels));
         return false;
     }
     if (!name.empty() && !may_be_named(name)) return false;
@@ -206,7 +206,7 @@ std::size_t Painting::labels_with_strokes() const {
 
 void Painting::change(Labels labels) {
     before_.push_back(std::exchange(labels_, std::move(labels)));
-    if (before_.size() > most_remembered) before_.pop_front();
+    if (before_.size() > max_remembered) before_.pop_front();
     after_.clear();
     problem_.clear();
     ++version_;

@@ -62,10 +62,10 @@ void PatchPanel::add_commands(std::vector<Command>& all, bool is_seen) {
 
 void PatchPanel::add_wire_commands(std::vector<Command>& all) {
     const PatchPicture& picture = bench_.picture();
-    constexpr std::size_t most_changed = 500, most_wires = 4000;
+    constexpr std::size_t max_changed = 500, max_wires = 4000;
     std::size_t changed = 0;
     for (const PictureWire& wire : picture.wires) {
-        if (++changed > most_changed) break;
+        if (++changed > max_changed) break;
         const std::string a = end_name({Hit::What::output, wire.from, wire.output}),
                           b = end_name({Hit::What::input, wire.to, wire.input});
         all.push_back({"wire", fmt::format("Remove the wire {} to {}", a, b), "", "disconnect delete",
@@ -74,12 +74,12 @@ void PatchPanel::add_wire_commands(std::vector<Command>& all) {
             all.push_back({"wire", fmt::format("Deliver {} to {} as {}", a, b, mode), "", "mode wire",
                            [this, a, b, mode] { bench_.connect(a, b, mode); }});
     }
-    const WireChoices choices = wire_choices(picture, most_wires);
+    const WireChoices choices = wire_choices(picture, max_wires);
     for (const auto& [from, to, drives] : choices.list)
         all.push_back({"wire", fmt::format("Wire {} to {}", from, to), "", drives ? "drive parameter" : "connect",
                        [this, from, to] { bench_.connect(from, to); }});
     if (choices.has_more)
-        all.push_back({"wire", fmt::format("Only {} of the possible wires are listed", most_wires), "",
+        all.push_back({"wire", fmt::format("Only {} of the possible wires are listed", max_wires), "",
                        "connect drive parameter more", [] {}, [] { return false; }});
 }
 

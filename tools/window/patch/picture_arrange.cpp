@@ -18,7 +18,7 @@ double height_of(const PictureNode& node) {
 }
 
 /// Longer columns are split side by side, so that a lane of many nodes has the shape of a screen.
-int most_rows(std::size_t nodes_of_lane) {
+int max_rows(std::size_t nodes_of_lane) {
     constexpr double wide = 1.4;  // aspect ratio of a screen, in boxes
     return std::max(24, static_cast<int>(std::ceil(std::sqrt(wide * static_cast<double>(nodes_of_lane)))));
 }
@@ -78,7 +78,7 @@ private:
             int row = 0;
             for (const int index : nodes) {
                 PictureNode& node = picture_.nodes[static_cast<std::size_t>(index)];
-                if (row == most_rows(order.size())) {
+                if (row == max_rows(order.size())) {
                     row = 0;
                     gone += y - top;
                     y = top;
@@ -99,14 +99,14 @@ private:
     }
 
     /// Nodes that somebody has put somewhere. Returns the bottom of the lowest.
-    double place_by_hand(const std::vector<int>& order, double lane_top, double least_y, std::size_t first_stack) {
+    double place_by_hand(const std::vector<int>& order, double lane_top, double min_y, std::size_t first_stack) {
         if (!window_ || window_->places.empty()) return 0.0;
         double bottom = 0.0;
         for (const int index : order) {
             PictureNode& node = picture_.nodes[static_cast<std::size_t>(index)];
             const auto found = window_->places.find(node.name);
             if (found == window_->places.end()) continue;
-            const double x = found->second.x, y = std::max(lane_top + found->second.y, least_y);
+            const double x = found->second.x, y = std::max(lane_top + found->second.y, min_y);
             node.box = {x, y, x + node_width, y + height_of(node)};
             bottom = std::max(bottom, node.box.bottom);
             left_ = std::min(left_, x - left_edge);
@@ -186,12 +186,12 @@ void place_ports(PictureNode& node) {
 }
 
 /// Above this number of nodes wires are drawn directly, because routing would take long.
-constexpr std::size_t most_routed = 300;
+constexpr std::size_t max_routed = 300;
 
 void route_wires(PatchPicture& picture) {
     std::vector<Box> boxes;
     std::vector<double> levels;
-    if (picture.nodes.size() <= most_routed) {
+    if (picture.nodes.size() <= max_routed) {
         for (const PictureNode& node : picture.nodes) boxes.push_back(node.box);
         for (const PictureLane& lane : picture.lanes) levels.push_back(lane.bottom + 0.5 * lane_gap);
         // No wires run below the picture.
@@ -201,9 +201,9 @@ void route_wires(PatchPicture& picture) {
     for (PictureWire& wire : picture.wires) {
         const auto& outputs = picture.nodes[static_cast<std::size_t>(wire.from)].outputs;
         const auto& inputs = picture.nodes[static_cast<std::size_t>(wire.to)].inputs;
-        constexpr int most_outputs = 256;
+        constexpr int max_outputs = 256;
         wire.way = router.way(outputs[static_cast<std::size_t>(wire.output)].at,
-                              inputs[static_cast<std::size_t>(wire.input)].at, most_outputs * wire.from + wire.output);
+                              inputs[static_cast<std::size_t>(wire.input)].at, max_outputs * wire.from + wire.output);
         wire.bounds = bounds_of(wire.way.front());
         for (const BezierCurve& piece : wire.way) {
             const Box box = bounds_of(piece);

@@ -116,7 +116,7 @@ void PlanSlices::follow_cursor(Point size) {
 }
 
 void PlanSlices::draw_outlines(const Painter& paint, const SlicePlane& plane, Point middle, double scale) {
-    constexpr double least_step = 1.5;  // pixels
+    constexpr double min_step = 1.5;  // pixels
     std::vector<ImVec2> points;
     for (const PlanOutlines::Piece& piece :
          outlines_.cut(scene_.plan_pieces(), plane.slice, plane.middle[axes_of(plane.slice).normal]))
@@ -127,7 +127,7 @@ void PlanSlices::draw_outlines(const Painter& paint, const SlicePlane& plane, Po
                 const bool is_last = &p == &line.back();
                 if (points.empty() || is_last ||
                     std::hypot(static_cast<double>(at.x - points.back().x),
-                               static_cast<double>(at.y - points.back().y)) >= least_step)
+                               static_cast<double>(at.y - points.back().y)) >= min_step)
                     points.push_back(at);
             }
             const double wide = piece.is_chosen ? 3.0 : piece.is_scanned ? 1.0 : 2.0;

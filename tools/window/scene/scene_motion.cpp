@@ -61,11 +61,11 @@ std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_chang
 void MotionGrain::drew(std::size_t triangles) {
     // A level of detail has a quarter to a third of the triangles of the next: fewer than this share of the most come
     // from a level that need not be.
-    constexpr std::size_t most = 100'000, few = most / 8, most_smooth = 15'000;
+    constexpr std::size_t most = 100'000, few = most / 8, max_smooth = 15'000;
     constexpr double step = 1.5, coarsest = 20.0;
     if (triangles > most) pixels_ = std::min(pixels_ * step, coarsest);
     else if (triangles < few) pixels_ = std::max(pixels_ / step, display::grain_of_motion);
-    samples_ = triangles > most_smooth ? 1 : 4;
+    samples_ = triangles > max_smooth ? 1 : 4;
 }
 
 SceneMotion::Next SceneMotion::next(std::uint64_t looks, bool has_coarse, bool is_held, double now) {

@@ -155,7 +155,7 @@ void ScenePanel::draw_measured(const render::Measurement& measured, ImU32 ink, c
 void ScenePanel::draw_hand(const Painter& paint, Point corner, Point size, double pixel) {
     pulled_.look(*bench_.status(), steady_ns());
     std::vector<HandSight> sights = pulled_.sights();
-    const double limit = bench_.plan() ? largest_force(*bench_.plan()) : most_of_device_N;
+    const double limit = bench_.plan() ? largest_force(*bench_.plan()) : max_of_device_N;
     if (auto own = hand_.sight(limit)) sights.insert(sights.begin(), std::move(*own));
     if (sights.empty() || screens_.tiles().empty() || screens_.tiles().front().views.empty()) return;
     const SceneScreens::Tile& tile = screens_.tiles().front();

@@ -15,7 +15,7 @@ namespace {
 
 // The scene is much slower to draw than the panels, so its rate is limited while the user does not move it, and reduced
 // when it takes more than a third of the time. A tracked head gets the full rate.
-constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
+constexpr double picture_every_s = 1.0 / 30.0, max_wait_s = 1.0;
 // Triangle counts for software rendering: above the first, moving scenes are drawn coarsely and quickly; above the
 // second, one sample per pixel is smooth enough.
 constexpr std::size_t many_triangles = 20'000, very_many_triangles = 300'000;
@@ -24,9 +24,9 @@ constexpr std::size_t many_triangles = 20'000, very_many_triangles = 300'000;
 /// picture that takes longer than the longest hold.
 void finish(SceneHand& hand) {
     constexpr GLuint64 turn_ns = 100'000'000;
-    constexpr int most_turns = 10;
+    constexpr int max_turns = 10;
     const GLsync drawn = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    for (int turn = 0; turn < most_turns; ++turn) {
+    for (int turn = 0; turn < max_turns; ++turn) {
         if (glClientWaitSync(drawn, GL_SYNC_FLUSH_COMMANDS_BIT, turn_ns) != GL_TIMEOUT_EXPIRED) break;
         hand.beat();
     }
@@ -40,7 +40,7 @@ void ScenePanel::render(int width, int height) {
     const bool same_size = width == width_ && height == height_;
     if (std::exchange(was_drawn_, false)) cost_s_ = static_cast<double>(ImGui::GetIO().DeltaTime);
     const double every = std::clamp((sight_.is_off_axis() ? 1.0 : 3.0) * cost_s_,
-                                    sight_.is_off_axis() ? 0.0 : picture_every_s, most_wait_s);
+                                    sight_.is_off_axis() ? 0.0 : picture_every_s, max_wait_s);
     if (!needs_picture_ && is_aimed_ && same_size && now - looked_at_ < every) return;
     looked_at_ = now;
     needs_picture_ = false;

@@ -29,9 +29,9 @@ void TextureTarget::make(int width, int height, int wanted) {
     width_ = width;
     height_ = height;
     samples_ = wanted;
-    GLint most_samples = 0;
-    glGetIntegerv(GL_MAX_SAMPLES, &most_samples);
-    const int samples = std::min(most_samples, wanted);
+    GLint max_samples = 0;
+    glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
+    const int samples = std::min(max_samples, wanted);
     glGenTextures(1, &texture_);
     glBindTexture(GL_TEXTURE_2D, texture_);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);

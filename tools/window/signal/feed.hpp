@@ -39,9 +39,9 @@ public:
         const ValueType* type = nullptr;
         double rate = 0.0;  ///< Hz
     };
-    static constexpr std::size_t most_columns = 16;
+    static constexpr std::size_t max_columns = 16;
     struct Latest {
-        std::array<double, most_columns> columns{};
+        std::array<double, max_columns> columns{};
         std::size_t count = 0;
     };
 

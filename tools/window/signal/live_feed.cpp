@@ -11,7 +11,7 @@ namespace {
 template <class T>
 Feed::Latest as_columns(const std::optional<observe::Seen<T>>& seen, const ValueType& type) {
     Feed::Latest latest;
-    if (!seen || type.columns.size() > Feed::most_columns) return latest;
+    if (!seen || type.columns.size() > Feed::max_columns) return latest;
     type.to_columns(&seen->value, latest.columns.data());
     latest.count = type.columns.size();
     return latest;

@@ -111,7 +111,7 @@ void TakeFeed::follow(const std::set<std::string>& looked_at, const std::set<std
         Trace last;
         read(port, now_ - 1.01 * seconds(found->second.back()->period), now_, last);
         Latest& latest = latest_[port];
-        latest.count = last.times.empty() ? 0 : std::min(last.columns.size(), most_columns);
+        latest.count = last.times.empty() ? 0 : std::min(last.columns.size(), max_columns);
         for (std::size_t c = 0; c < latest.count; ++c) latest.columns[c] = last.columns[c].back();
     }
     std::erase_if(cuts_, [&](const auto& item) { return !traced.contains(item.first); });

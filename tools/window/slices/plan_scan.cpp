@@ -35,7 +35,7 @@ PlanScanData read_plan_scan(const std::filesystem::path& scan) {
     return data;
 }
 
-volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t most_samples) {
+volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t max_samples) {
     Vec3 low(infinity), high(-infinity), spacing(infinity);
     for (const volume::Grid& grid : grids) {
         if (grid.values.empty()) continue;
@@ -49,7 +49,7 @@ volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t mo
     for (int axis = 0; axis < 3; ++axis) {
         const double along = std::round((high[axis] - low[axis]) / spacing[axis]) + 1.0;
         samples *= along;
-        if (samples > static_cast<double>(most_samples)) return {};
+        if (samples > static_cast<double>(max_samples)) return {};
         joined.size[static_cast<std::size_t>(axis)] = static_cast<int>(along);
     }
     joined.values.assign(joined.count(), 0.0f);
@@ -83,9 +83,9 @@ volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t mo
     return joined;
 }
 
-PlanScanData scan_of_fragments(const std::filesystem::path& plan, std::size_t most_samples) {
+PlanScanData scan_of_fragments(const std::filesystem::path& plan, std::size_t max_samples) {
     PlanScanData data;
-    data.grid = joined_grids(render::read_densities(plan), most_samples);
+    data.grid = joined_grids(render::read_densities(plan), max_samples);
     data.window = {render::section_grey.black, render::section_grey.white};
     data.name = "the fragments, where they were scanned";
     data.unit = "mg/cm³";

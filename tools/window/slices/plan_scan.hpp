@@ -25,10 +25,10 @@ struct PlanScanData {
 PlanScanData read_plan_scan(const std::filesystem::path& scan);
 
 /// Density of the fragments of a plan where they were scanned, kg/m³, on one grid of the least spacing; the largest where
-/// several overlap. An empty grid: no fragment holds densities, or together they cover more than `most_samples`.
-PlanScanData scan_of_fragments(const std::filesystem::path& plan, std::size_t most_samples = 200'000'000);
+/// several overlap. An empty grid: no fragment holds densities, or together they cover more than `max_samples`.
+PlanScanData scan_of_fragments(const std::filesystem::path& plan, std::size_t max_samples = 200'000'000);
 /// The same of grids. A sample is that of the nearest one.
-volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t most_samples);
+volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t max_samples);
 
 /// Whether a fragment of one plan has the bytes of a fragment of the other one. A plan that cannot be read is of no case.
 bool are_of_one_case(const std::filesystem::path& plan, const std::filesystem::path& other);

@@ -72,7 +72,7 @@ void TrainPanel::follow(const std::shared_ptr<observe::Observer>& observer) {
     for (const compile::ScheduleNode& node : bench_.plan()->nodes) {
         if (const auto most = node.params.find("max_force");
             most != node.params.end() && node.type->role == NodeRole::hand_sink)
-            most_N_ = most->second->value;
+            max_N_ = most->second->value;
         for (const compile::ScheduleOutput& out : node.outputs)
             if (out.name == "penetration" && depth_.empty()) depth_ = node.name + "." + out.name;
         if (node.type->name != "task") continue;
@@ -112,7 +112,7 @@ void TrainPanel::meter(const Fonts& fonts, double force) const {
     ImGui::Dummy(vec({wide, high}));
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     const Box bar{at.x, at.y, at.x + wide, at.y + high};
-    const double most = std::max(most_N_, 0.1), share = std::clamp(force / most, 0.0, 1.0);
+    const double most = std::max(max_N_, 0.1), share = std::clamp(force / most, 0.0, 1.0);
     const bool is_over = limit_N_ > 0.0 && force > limit_N_;
     paint.box(bar, tone::lane, 4.0);
     paint.box({bar.left, bar.top, bar.left + share * wide, bar.bottom},

@@ -38,7 +38,7 @@ private:
     std::int64_t plan_version_ = -1;
     std::string node_, depth_;  ///< the task node; the port with the depth where there is none
     std::optional<training::TaskFile> task_;
-    double limit_N_ = 0.0, most_N_ = 20.0;  ///< of the task, 0: none; of the device
+    double limit_N_ = 0.0, max_N_ = 20.0;  ///< of the task, 0: none; of the device
     std::vector<std::string> watched_;
     double peak_N_ = 0.0;
     int scored_run_ = -1;

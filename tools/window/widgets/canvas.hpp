@@ -28,7 +28,7 @@ struct Box {
 struct Canvas {
     Point origin;
     double zoom = 1.0;  ///< pixels per unit
-    static constexpr double least_zoom = 0.01, most_zoom = 4.0;
+    static constexpr double min_zoom = 0.01, max_zoom = 4.0;
 
     Point to_pixel(Point world) const { return (world - origin) * zoom; }
     Point to_world(Point pixel) const { return pixel * (1.0 / zoom) + origin; }
@@ -40,7 +40,7 @@ struct Canvas {
     /// Zooms about `pixel`, which keeps its position.
     void zoom_at(Point pixel, double factor) {
         const Point fixed = to_world(pixel);
-        zoom = std::clamp(zoom * factor, least_zoom, most_zoom);
+        zoom = std::clamp(zoom * factor, min_zoom, max_zoom);
         origin = fixed - pixel * (1.0 / zoom);
     }
     /// Centres and fits `what` with a margin, at most at `largest` pixels per unit.
@@ -48,7 +48,7 @@ struct Canvas {
         constexpr double margin = 12.0;
         const double across = (width - 2 * margin) / std::max(1.0, what.width());
         const double down = (height - 2 * margin) / std::max(1.0, what.height());
-        zoom = std::clamp(std::min({across, down, largest}), least_zoom, most_zoom);
+        zoom = std::clamp(std::min({across, down, largest}), min_zoom, max_zoom);
         origin = what.middle() - Point{width, height} * (0.5 / zoom);
     }
 };

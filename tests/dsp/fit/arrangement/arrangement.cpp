@@ -69,7 +69,7 @@ TEST_CASE("a fragment that is taken out stands alone, and no group of one is lef
     REQUIRE(a.remove(2));
     CHECK(a.outermost(0) == none);
     CHECK_FALSE(a.remove(0));
-    for (int group = 0; group < static_cast<int>(a.most_groups()); ++group) CHECK_FALSE(a.exists(group));
+    for (int group = 0; group < static_cast<int>(a.max_groups()); ++group) CHECK_FALSE(a.exists(group));
 }
 
 TEST_CASE("what is together already is not joined again, and any number of joins finds room") {

@@ -44,7 +44,7 @@ TEST_CASE("a long record has no more rows than a picture can show, each of all i
     const std::vector<double> x = rising(300000);
     signal::RowSpectra rows(settings(), x.size(), 11);
     rows.push(x);
-    CHECK(rows.rows().size() == signal::RowSpectra::most_rows);
+    CHECK(rows.rows().size() == signal::RowSpectra::max_rows);
     CHECK(rows.length() == 750);
     CHECK(rows.rows().front().size() == 11);
     for (std::size_t i = 100; i < 400; ++i)

@@ -69,7 +69,7 @@ TEST_CASE("what the unbroken bone proposes is the break, and a second painting i
     CHECK(both > 0.85 * painted(first));
     // Nothing but the painted area depends on these: all else was kept.
     const std::size_t kept = files_in(cache.path);
-    bar.settings.least_area = 0.0;
+    bar.settings.min_area = 0.0;
     const Points again = bar.proposed();
     bar.settings.facing = {bar.settings.main};
     const Points near = bar.proposed();
@@ -79,7 +79,7 @@ TEST_CASE("what the unbroken bone proposes is the break, and a second painting i
     CHECK(same_paint(bar.proposed(), near));
     bar.settings.facing.clear();
     CHECK(same_paint(bar.proposed(), again));
-    bar.settings.least_area.reset();
+    bar.settings.min_area.reset();
     bar.settings.whole = true;
     CHECK(same_paint(bar.proposed(), first));
 }

@@ -67,7 +67,7 @@ const json* row_of(const json& checked, const std::string& from, const std::stri
 }
 
 /// The largest number in a column of a CSV file.
-double most_in(const std::string& csv, std::size_t column) {
+double max_in(const std::string& csv, std::size_t column) {
     std::istringstream lines(csv);
     double most = 0.0;
     for (std::string line; std::getline(lines, line);) {
@@ -128,9 +128,9 @@ TEST_CASE("a wire cannot drive a stiffness beyond what the device states") {
     const Outcome run = folder.tactus("render " + patch + " --seconds 2 --out " + (folder.path / "out").string());
     INFO(run.err);
     REQUIRE(run.code == 0);
-    const double depth = most_in(slurp(folder.path / "out/depth.csv"), 1);
+    const double depth = max_in(slurp(folder.path / "out/depth.csv"), 1);
     CHECK(depth > 0.5e-3);
-    CHECK(most_in(slurp(folder.path / "out/force.csv"), 3) == Approx(5000.0 * depth).epsilon(0.01));
+    CHECK(max_in(slurp(folder.path / "out/force.csv"), 3) == Approx(5000.0 * depth).epsilon(0.01));
     CHECK(folder.tactus("check " + patch).code == 0);
 }
 

@@ -130,7 +130,7 @@ TEST_CASE("the largest force of a hand is the lower limit of its output and its 
         INFO(entry.path().string());
         const Workbench bench(choice_of(entry.path()));
         // The simulated device of the saw states its own.
-        const double of_device = entry.path().stem() == "saw-training" ? 25.0 : most_of_device_N;
+        const double of_device = entry.path().stem() == "saw-training" ? 25.0 : max_of_device_N;
         for (const compile::ScheduleNode& node : bench.plan()->nodes)
             if (node.type->name == "device_output")
                 CHECK(largest_force(*bench.plan()) == std::min(node.params.at("max_force")->value, of_device));

@@ -35,11 +35,11 @@ TEST_CASE("a person takes the hand of a patch with the mouse and feels and gives
         walk.person.move(x, y);
         Person::wait(0.3);
         walk.person.button(1, true);
-        double most_N = 0.0;
-        while (most_N < 1.2 && y < scene.bottom - 10.0) {
+        double max_N = 0.0;
+        while (max_N < 1.2 && y < scene.bottom - 10.0) {
             walk.person.move(x, y += step);
             Person::wait(0.4);
-            most_N = std::max(most_N, force_N());
+            max_N = std::max(max_N, force_N());
         }
         walk.keep("pushes");
         walk.person.button(1, false);
@@ -47,7 +47,7 @@ TEST_CASE("a person takes the hand of a patch with the mouse and feels and gives
         REQUIRE(after.size() >= 4);
         // Against 1 N/mm.
         CHECK(std::hypot(after[1] - before[1], after[2] - before[2], after[3] - before[3]) > 1e-3);
-        CHECK(most_N > 1.2);
+        CHECK(max_N > 1.2);
 
         walk.press("Give the hand back");
         CHECK(walk.waits_for("Take the hand"));

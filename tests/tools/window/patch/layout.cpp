@@ -46,7 +46,7 @@ TEST_CASE("what lies under the mouse stays there while it zooms, and all fits in
     for (int i = 0; i < 60; ++i) canvas.zoom_at(mouse, i % 7 == 0 ? 0.5 : 1.3);
     CHECK(canvas.to_world(mouse).x == Approx(under.x));
     CHECK(canvas.to_world(mouse).y == Approx(under.y));
-    CHECK(canvas.zoom <= Canvas::most_zoom);
+    CHECK(canvas.zoom <= Canvas::max_zoom);
 }
 
 TEST_CASE("ticks are round, within the range and never too many, at any scale") {

@@ -22,7 +22,7 @@ double overlap(const Box& a, const Box& b) {
                     std::min(a.bottom, b.bottom) - std::max(a.top, b.top));
 }
 
-double most_overlap(const std::vector<Box>& boxes) {
+double max_overlap(const std::vector<Box>& boxes) {
     double most = 0.0;
     for (std::size_t i = 0; i < boxes.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) most = std::max(most, overlap(boxes[i], boxes[j]));
@@ -58,7 +58,7 @@ TEST_CASE("names at random cover nothing and keep sizes and columns and the pict
         }
         const std::vector<Box> places = label_places(wanted, picture);
         INFO("round " << round);
-        CHECK(most_overlap(places) < 1e-6);
+        CHECK(max_overlap(places) < 1e-6);
         double moved = 0.0;
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             CHECK(places[i].left == wanted[i].left);
