@@ -62,7 +62,7 @@ install(FILES ${TACTUS_GENERATED}/graph/node/abi_headers.hpp
 install(FILES tools/embed/embedded.hpp tools/embed/host_hand.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/tools/embed COMPONENT development)
 install(FILES tools/run/output_folder.hpp tools/run/patch_choice.hpp
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/tools/session COMPONENT development)
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/tools/run COMPONENT development)
 
 # find_package(Tactus 0.1) → Tactus::tactus; pkg-config tactus.
 include(CMakePackageConfigHelpers)

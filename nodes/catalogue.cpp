@@ -25,12 +25,12 @@
     X(BladeContact, contact)            \
     X(Body, contact)                    \
     X(BoxGuide, guide)                  \
-    X(Brush, plan)                  \
+    X(Brush, plan)                      \
     X(Burr, contact)                    \
     X(Button, device)                   \
     X(ButtonEvents, event)              \
     X(Carve, contact)                   \
-    X(CaseScene, plan)              \
+    X(CaseScene, plan)                  \
     X(Clip, math)                       \
     X(Clock, logic)                     \
     X(Comb, vibration)                  \
@@ -67,7 +67,7 @@
     X(Filter, vibration)                \
     X(ForceShaping, coupling)           \
     X(ForceTone, vibration)             \
-    X(FragmentMatcher, plan)        \
+    X(FragmentMatcher, plan)            \
     X(Gain, vibration)                  \
     X(Gate, logic)                      \
     X(GrantedPower, device)             \
@@ -108,7 +108,7 @@
     X(PathGuide, guide)                 \
     X(PlanFrame, training)              \
     X(PlaneGuide, guide)                \
-    X(PlannedPlace, plan)           \
+    X(PlannedPlace, plan)               \
     X(Player, vibration)                \
     X(PointGuide, guide)                \
     X(PointProxy, coupling)             \
@@ -151,8 +151,8 @@
     X(ToNumber, math)                   \
     X(ToSignal, math)                   \
     X(TransformPoint, geometry)         \
-    X(TumourMargin, plan)           \
-    X(Vessel, plan)                 \
+    X(TumourMargin, plan)               \
+    X(Vessel, plan)                     \
     X(Viscosity, guide)                 \
     X(VoxmapContact, contact)           \
     X(Workspace, device)                \

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_library OUT_DIR: generates the bundled bones and saw recordings, which are not stored in the repository.
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/library/broken_mandible.hpp"
 #include "assets/library/fibula.hpp"
@@ -9,6 +8,7 @@
 #include "assets/library/mandible.hpp"
 #include "assets/library/saw_recordings.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "assets/vessel/track_file.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"

@@ -122,7 +122,8 @@ void save_bones(std::span<const Bone> bones, const std::filesystem::path& path) 
 
 void save_bone(SparseBone bone, const Bone& about, const std::filesystem::path& path) {
     const VdbCodec& vdb = codec();
-    write_sealed(path, identifier_of(bone, about), [&](std::ostream& out) { vdb.write(bone, about, out, this_call()); });
+    write_sealed(path, identifier_of(bone, about),
+                 [&](std::ostream& out) { vdb.write(bone, about, out, this_call()); });
 }
 
 void save_bone(const Bone& bone, const std::filesystem::path& path) { save_bones({&bone, 1}, path); }

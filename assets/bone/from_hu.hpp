@@ -56,7 +56,8 @@ struct SparseHuBone {
     std::map<std::string, std::string> provenance;
     std::size_t components = 0;  ///< found above the threshold, before selection
     std::size_t voxels_above = 0, voxels_kept = 0;  ///< samples at or above the threshold: all, and in kept components
-    std::size_t voxels_hollow = 0, voxels_marrow = 0;  ///< that count as bone because bone encloses them: wholly; with leaks
+    std::size_t voxels_hollow = 0,
+                voxels_marrow = 0;  ///< that count as bone because bone encloses them: wholly; with leaks
 };
 
 /// Builds distance and density on the samples of `hu` (LPS, m) around the bone, with a margin of 5 mm and at least six

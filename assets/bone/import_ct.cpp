@@ -81,9 +81,8 @@ std::string list_of_labels(const volume::ScanVolume& about, const volume::Tally&
                                                       : fmt::format("{} ({})", label, named->name));
         if (words.size() == 12) break;
     }
-    return words.empty()
-               ? "it holds none"
-               : fmt::format("it holds {}{}", fmt::join(words, ", "), labels.size() > 13 ? ", ..." : "");
+    return words.empty() ? "it holds none"
+                         : fmt::format("it holds {}{}", fmt::join(words, ", "), labels.size() > 13 ? ", ..." : "");
 }
 
 }  // namespace

@@ -188,8 +188,8 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     for (const volume::Segment& segment : chosen) {
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
         // One label at a time is in memory.
-        const auto of_label = std::ranges::find_if(
-            layers, [&](const LabelLayer& each) { return each.boxes.contains(segment.label); });
+        const auto of_label =
+            std::ranges::find_if(layers, [&](const LabelLayer& each) { return each.boxes.contains(segment.label); });
         reader->show_layer(of_label->layer);
         volume::ReorientedVolume& source = *of_label->source;
         const volume::Components::Box& box = of_label->boxes.at(segment.label);
@@ -204,10 +204,10 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         made.summary.notes.insert(made.summary.notes.end(), settled.begin(), settled.end());
         if (!empty.empty())
             made.summary.notes.push_back(fmt::format("of {} named segments {} have no voxels: {}",
-                                                     reader->about.segments.size(), empty.size(), fmt::join(empty, ", ")));
+                                                     reader->about.segments.size(), empty.size(),
+                                                     fmt::join(empty, ", ")));
         made.summary.components = keep > 0 ? parts : pieces_of(made.bone.distance);
-        made.summary.components_kept =
-            keep > 0 ? std::min(keep, made.summary.components) : made.summary.components;
+        made.summary.components_kept = keep > 0 ? std::min(keep, made.summary.components) : made.summary.components;
         measure(made.bone, made.summary);
         add_points(made.bone, options, made.summary);
         add_provenance(made.bone, options, made.summary, source_hash);

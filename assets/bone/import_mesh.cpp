@@ -147,8 +147,8 @@ mesh::Mesh largest_bodies(const mesh::Mesh& mesh, const mesh::MeshTopology& topo
         summary.notes.push_back(fmt::format("{} inner shell{} looking inwards: {:.0f} mm³ are hollow", hollows,
                                             hollows == 1 ? "" : "s", hollow / mm3));
     if (keep < bodies.size())
-        summary.notes.push_back(fmt::format("{} of {} bodies kept; {:.0f} mm³ left out; --component all keeps them", keep,
-                                            bodies.size(), left_out / mm3));
+        summary.notes.push_back(fmt::format("{} of {} bodies kept; {:.0f} mm³ left out; --component all keeps them",
+                                            keep, bodies.size(), left_out / mm3));
     return out;
 }
 

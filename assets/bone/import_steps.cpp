@@ -93,9 +93,10 @@ namespace {
 void note_metal(std::size_t samples, const Vec3& spacing, ImportSummary& summary) {
     if (samples == 0) return;
     summary.metal_mm3 = static_cast<double>(samples) * spacing.x * spacing.y * spacing.z / (mm * mm * mm);
-    summary.notes.push_back(fmt::format("{} voxels ({:.3g} mm³) are denser than {:.0f} kg/m³, as metal is; they are "
-                                        "counted separately from the density of the bone",
-                                        samples, summary.metal_mm3, max_bone_density));
+    summary.notes.push_back(
+        fmt::format("{} voxels ({:.3g} mm³) are denser than {:.0f} kg/m³, as metal is; they are "
+                    "counted separately from the density of the bone",
+                    samples, summary.metal_mm3, max_bone_density));
 }
 
 }  // namespace
@@ -134,7 +135,8 @@ void measure(const Bone& bone, ImportSummary& summary) {
 void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run) {
     const BoneMeasures found = measures_of(bone, run);
     note_metal(found.metal, bone.layout.spacing, summary);
-    if (found.inside + found.metal == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+    if (found.inside + found.metal == 0)
+        throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
     summary.frame = "LPS";
     summary.size = bone.layout.size;
     for (int axis = 0; axis < 3; ++axis)

@@ -2,9 +2,9 @@
 #include "assets/library/broken_mandible.hpp"
 
 #include "assets/bone/labels.hpp"
+#include "assets/library/hand_script.hpp"
 #include "assets/plan/break_bone.hpp"
 #include "assets/plan/paint.hpp"
-#include "assets/library/hand_script.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
@@ -240,7 +240,7 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
 }
 
 plan::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
-                        const std::vector<std::uint64_t>& hashes) {
+                       const std::vector<std::uint64_t>& hashes) {
     plan::CasePlan plan;
     plan.title = "A mandible in twelve pieces";
     for (std::size_t n = 0; n < broken.fragments.size(); ++n)

@@ -44,6 +44,6 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
 
 /// The plan of the case as scanned, with one file per fragment; the first fragment is locked.
 plan::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
-                        const std::vector<std::uint64_t>& hashes);
+                       const std::vector<std::uint64_t>& hashes);
 
 }  // namespace tactus::library

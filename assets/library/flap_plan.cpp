@@ -236,14 +236,15 @@ reconstruction::Reconstruction reconstruction_of(const FlapCase& made, const std
     for (const NamedPoint& mark : made.perforators) all.flap.perforators.push_back({mark.name, mark.position});
     for (const NamedPoint& site : made.sites) {
         const bool is_vein = site.name.find("vein") != std::string::npos;
-        all.flap.sites.push_back(
-            {site.name, is_vein ? reconstruction::VesselKind::vein : reconstruction::VesselKind::artery, site.position});
+        all.flap.sites.push_back({site.name,
+                                  is_vein ? reconstruction::VesselKind::vein : reconstruction::VesselKind::artery,
+                                  site.position});
     }
     return all;
 }
 
 plan::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>& files,
-                        const std::vector<std::uint64_t>& hashes, const reconstruction::Reconstruction& all) {
+                       const std::vector<std::uint64_t>& hashes, const reconstruction::Reconstruction& all) {
     plan::CasePlan plan;
     plan.title = "A jaw and three segments of a fibula (synthetic)";
     for (std::size_t n = 0; n < pieces.bones.size(); ++n)

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "assets/plan/case_plan.hpp"
 #include "assets/library/flap_case.hpp"
+#include "assets/plan/case_plan.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
 
 #include <array>
@@ -38,6 +38,6 @@ reconstruction::Reconstruction reconstruction_of(const FlapCase& made, const std
 /// Returns the plan with one file per piece: alternative 'main' has the planned poses; 'table', the current one, has
 /// the initial poses. The pieces of the jaw are locked in both. Each begins with the reconstruction.
 plan::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>& files,
-                        const std::vector<std::uint64_t>& hashes, const reconstruction::Reconstruction& all);
+                       const std::vector<std::uint64_t>& hashes, const reconstruction::Reconstruction& all);
 
 }  // namespace tactus::library

@@ -155,7 +155,8 @@ void read_strips(Body& body, const Property& property, double count, const std::
 void read_element(Body& body, const Element& element, const std::string& file, geometry::TriangleSurface& surface,
                   std::vector<std::string>& notes) {
     const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
-    const bool is_strips = element.name == "tristrips" || element.name == "tristrip" || element.name == "triangle_strips";
+    const bool is_strips =
+        element.name == "tristrips" || element.name == "tristrip" || element.name == "triangle_strips";
     if (element.properties.empty()) return;
     if (!is_vertex && !is_face && !is_strips && element.count > 0.0)
         notes.push_back(fmt::format("{:.0f} elements '{}' were not read", element.count, element.name));

@@ -101,8 +101,8 @@ MeshText read_stl(const std::string& bytes, const std::string& file) {
     }
     if (bodies > 1) mesh.notes.push_back(fmt::format("{} bodies follow each other in the file; all were read", bodies));
     if (at < bytes.size())
-        mesh.notes.push_back(fmt::format("{} bytes behind the last triangle were not read: no body begins there",
-                                         bytes.size() - at));
+        mesh.notes.push_back(
+            fmt::format("{} bytes behind the last triangle were not read: no body begins there", bytes.size() - at));
     return mesh;
 }
 

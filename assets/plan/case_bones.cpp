@@ -3,11 +3,11 @@
 
 #include "assets/bone/import.hpp"
 #include "assets/bone/surface_points.hpp"
+#include "assets/mesh/mesh.hpp"
 #include "assets/plan/kept_points.hpp"
 #include "assets/plan/mesh_unit.hpp"
 #include "assets/plan/plan_file.hpp"
 #include "assets/plan/propose_paint.hpp"
-#include "assets/mesh/mesh.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"

@@ -3,8 +3,8 @@
 
 #include "assets/bone/assumed_density.hpp"
 #include "assets/bone/import.hpp"
-#include "assets/plan/kept_result.hpp"
 #include "assets/file/cache.hpp"
+#include "assets/plan/kept_result.hpp"
 #include "dsp/core/hash.hpp"
 
 #include <fmt/format.h>

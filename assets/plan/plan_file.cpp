@@ -210,8 +210,8 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
         step.painted = HashedFile{painted.text("file"), painted.hash("hash")};
     }
     if (item.has("vessels"))
-        step.vessels =
-            std::make_shared<std::vector<reconstruction::FlapVessel>>(reconstruction::vessels_of(item.json(), item.place()));
+        step.vessels = std::make_shared<std::vector<reconstruction::FlapVessel>>(
+            reconstruction::vessels_of(item.json(), item.place()));
     return step;
 }
 

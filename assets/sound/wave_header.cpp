@@ -66,7 +66,8 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
         if (!is_chunk_name(name)) break;
         const std::uint64_t length = number_at(chunk, 4, 4), left = present - at - 8;
         if (name == "ds64" && length >= 16) long_size = number_at(read(at + 8, 16), 8, 8);
-        else if (name == "fmt " && length >= 16 && length <= std::min<std::uint64_t>(left, 4096)) format = read(at + 8, length);
+        else if (name == "fmt " && length >= 16 && length <= std::min<std::uint64_t>(left, 4096))
+            format = read(at + 8, length);
         else if (name == "data") {
             start = at + 8;
             is_before_format = format.empty();
@@ -76,7 +77,8 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
             bool is_unfinished = wanted > left;
             if (wanted == 0 && left > 0) {
                 const std::string next = read(at + 8, 8);
-                is_unfinished = !(next.size() == 8 && is_chunk_name(next.substr(0, 4)) && number_at(next, 4, 4) + 8 <= left);
+                is_unfinished =
+                    !(next.size() == 8 && is_chunk_name(next.substr(0, 4)) && number_at(next, 4, 4) + 8 <= left);
             }
             if (is_unfinished) {
                 size = left, is_wrong = true;
@@ -117,14 +119,16 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
     put(made.bytes, is_long ? 0xffffffffu : body.size() + size, 4);
     made.bytes += body;
     const bool is_unknown = wanted == 0 || wanted >= 0x7fffff00;
-    made.note = is_before_format && !is_wrong ? std::string("the samples stand before their format in the file")
-                : size >= wanted && !is_unknown
-                    ? fmt::format("the header states {} bytes and the file has {}; all samples are there", stated + 8, present)
-                : is_unknown ? fmt::format("the recording was not finished: its header states no length; the {} bytes of "
-                                           "samples that the file has were read",
-                                           size)
-                             : fmt::format("the sound is cut short: the {} of {} bytes of samples that the file has were read",
-                                           size, wanted);
+    made.note =
+        is_before_format && !is_wrong ? std::string("the samples stand before their format in the file")
+        : size >= wanted && !is_unknown
+            ? fmt::format("the header states {} bytes and the file has {}; all samples are there", stated + 8, present)
+        : is_unknown ? fmt::format(
+                           "the recording was not finished: its header states no length; the {} bytes of "
+                           "samples that the file has were read",
+                           size)
+                     : fmt::format("the sound is cut short: the {} of {} bytes of samples that the file has were read",
+                                   size, wanted);
     return made;
 }
 

@@ -336,7 +336,7 @@ private:
     double rate_ = 0.0;
     std::string left_out_;
     std::vector<std::size_t> lengths_;
-    std::size_t held_ = 0;      // numbers of all channels so far
+    std::size_t held_ = 0;  // numbers of all channels so far
     std::size_t unpacked_ = 0;  // bytes of the variable that is read
     std::unordered_map<std::string, int> taken_;  // names, with how many of each
     Recording recording_;

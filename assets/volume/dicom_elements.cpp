@@ -76,7 +76,9 @@ private:
 
     /// Without a stated transfer syntax: two capital letters follow the tag of an explicit element.
     bool has_representation() const {
-        const auto is_capital = [&](std::size_t at) { return at < bytes_.size() && bytes_[at] >= 'A' && bytes_[at] <= 'Z'; };
+        const auto is_capital = [&](std::size_t at) {
+            return at < bytes_.size() && bytes_[at] >= 'A' && bytes_[at] <= 'Z';
+        };
         return is_capital(at_ + 4) && is_capital(at_ + 5);
     }
 

@@ -26,8 +26,8 @@ Format format_of(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) return Format::dicom;
     file::require_file(path);
     if (ends_with(path, ".nrrd") || ends_with(path, ".nhdr")) return Format::nrrd;
-    if (ends_with(path, ".nii") || ends_with(path, ".nii.gz") || ends_with(path, ".hdr") ||
-        ends_with(path, ".img") || ends_with(path, ".hdr.gz") || ends_with(path, ".img.gz"))
+    if (ends_with(path, ".nii") || ends_with(path, ".nii.gz") || ends_with(path, ".hdr") || ends_with(path, ".img") ||
+        ends_with(path, ".hdr.gz") || ends_with(path, ".img.gz"))
         return Format::nifti;
     if (ends_with(path, ".inv3")) return Format::inv3;
     if (ends_with(path, ".dcm") || ends_with(path, ".ima") || is_dicom_file(path) || file::is_zip_file(path))
@@ -52,7 +52,8 @@ std::unique_ptr<SliceReader> open_in_mm(const std::filesystem::path& path, const
         case Format::none: break;
     }
     throw Error(
-        fmt::format("{}: not a supported volume; use a DICOM folder, zip or file, .nrrd, .nhdr, .nii, .nii.gz, .hdr with .img, or .inv3",
+        fmt::format("{}: not a supported volume; use a DICOM folder, zip or file, .nrrd, .nhdr, .nii, .nii.gz, .hdr "
+                    "with .img, or .inv3",
                     path.string()));
 }
 

@@ -65,9 +65,10 @@ void settle_meaning(ScanVolume& volume, const Tally& tally, bool integers) {
     if (tally.not_numbers > 0 && tally.not_numbers == tally.count)
         throw Error(fmt::format("{}: no voxel's value is a number", volume.source));
     if (tally.not_numbers > 0)
-        volume.notes.push_back(fmt::format("{} of {} voxels are not numbers; they were read as air, the least value of "
-                                           "their slice",
-                                           tally.not_numbers, tally.count));
+        volume.notes.push_back(
+            fmt::format("{} of {} voxels are not numbers; they were read as air, the least value of "
+                        "their slice",
+                        tally.not_numbers, tally.count));
     if (!volume.segments.empty() || (integers && looks_like_labels(tally))) volume.kind = VolumeKind::labels;
     else if (!integers && volume.kind == VolumeKind::ct && looks_like_labels(tally)) {
         volume.kind = VolumeKind::maybe_labels;

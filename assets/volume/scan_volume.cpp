@@ -20,7 +20,9 @@ std::string_view name_of(HuKind kind) {
     return "none";
 }
 
-std::string_view name_of(VolumeKind kind) { return kind == VolumeKind::ct ? "ct" : kind == VolumeKind::labels ? "labels" : "labels?"; }
+std::string_view name_of(VolumeKind kind) {
+    return kind == VolumeKind::ct ? "ct" : kind == VolumeKind::labels ? "labels" : "labels?";
+}
 
 std::string_view name_of(Frame frame) { return frame == Frame::lps ? "LPS" : "RAS"; }
 

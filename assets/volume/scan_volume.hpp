@@ -64,9 +64,11 @@ struct ScanVolume {
 };
 
 struct ReadOptions {
-    std::string series;  ///< DICOM: the series to read, by its UID or the end of it; several between commas are joined; needed when a folder has several
+    std::string
+        series;  ///< DICOM: the series to read, by its UID or the end of it; several between commas are joined; needed when a folder has several
     std::optional<std::string> unit{};  ///< "mm", "cm" or "m", for files that state no unit of length; default: mm
-    bool fill_gaps = false;  ///< DICOM: interpolate where slices are missing, with a note; else such a series is refused
+    bool fill_gaps =
+        false;  ///< DICOM: interpolate where slices are missing, with a note; else such a series is refused
 };
 
 /// Reads NRRD (.nrrd, .nhdr, .seg.nrrd), NIfTI-1 and -2 (.nii, .nii.gz), a DICOM file, a folder or zip of them,

@@ -199,7 +199,8 @@ private:
         std::promise<void> done;
         std::future<void> closed = done.get_future();
         std::thread([opened = std::move(open_), promise = std::move(done)]() mutable {
-            if (opened->jack && opened->jack->is_gone()) sleep_for(std::chrono::nanoseconds(std::chrono::hours(24 * 365)).count());
+            if (opened->jack && opened->jack->is_gone())
+                sleep_for(std::chrono::nanoseconds(std::chrono::hours(24 * 365)).count());
             Pa_StopStream(opened->stream);
             Pa_CloseStream(opened->stream);
             opened.reset();

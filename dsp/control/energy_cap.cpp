@@ -205,8 +205,9 @@ Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& t
             double high = 1.0;
             for (int n = 0; n < 24; ++n) {
                 const double middle = 0.5 * (share + high);
-                const bool fits = ahead(felt.force * middle, force_side).all() +
-                                      ahead(felt.torque * middle, torque_side).all() <= available;
+                const bool fits =
+                    ahead(felt.force * middle, force_side).all() + ahead(felt.torque * middle, torque_side).all() <=
+                    available;
                 (fits ? share : high) = middle;
             }
         } else if (both.along > 0.0) {

@@ -44,8 +44,8 @@ bool oscillates(const SampledWall& wall) noexcept;
 /// The lowest stiffness at which a hand oscillates, and the hand that does.
 struct SimulatedLimit {
     double stiffness = 0.0;  ///< N/m; `max` where none oscillates
-    double press = 0.0;      ///< N
-    double approach = 0.0;   ///< m/s
+    double press = 0.0;  ///< N
+    double approach = 0.0;  ///< m/s
 };
 
 /// The worst over presses from 0.5 N to 0.8 of the device's largest force, beyond which no wall holds a hand (of 10 N for a

@@ -29,8 +29,7 @@ bool is_as_scanned(std::span<const contact::SurfacePoint> points, const Pose& pl
         area += p.area;
         ways += p.area * glm::dot(translation, translation);
     }
-    return area >= settings.min_area && area >= settings.share * area_there &&
-           std::sqrt(ways / area) < settings.moved;
+    return area >= settings.min_area && area >= settings.share * area_there && std::sqrt(ways / area) < settings.moved;
 }
 
 }  // namespace tactus::fit

@@ -188,8 +188,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
 
 double FragmentMatcher::min_overlap(int moving, int partner) const noexcept {
     const auto paint = [this](int n) { return paint_[static_cast<std::size_t>(n)]; };
-    return std::max(settings.fit.min_overlap,
-                    Acceptance::min_paint_share * std::min(paint(moving), paint(partner)));
+    return std::max(settings.fit.min_overlap, Acceptance::min_paint_share * std::min(paint(moving), paint(partner)));
 }
 
 FacePairFit FragmentMatcher::fit_faces(FitEnergy& energy, std::size_t moving, std::size_t fixed,

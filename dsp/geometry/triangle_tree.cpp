@@ -188,8 +188,7 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within, Budget& b
     return best < size() ? near_on(best, p) : Near{};
 }
 
-std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near> found,
-                                   Budget& budget) const noexcept {
+std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near> found, Budget& budget) const noexcept {
     std::size_t count = 0, depth = 0;
     if (nodes_.empty()) return 0;
     std::uint32_t stack[max_levels];

@@ -137,7 +137,7 @@ double distance(const Capsule& a, const Capsule& b) noexcept {
 double distance(const Capsule& a, const Block& b) noexcept {
     const Mat3 back = glm::transpose(b.axes);
     return min_along(back * (a.a - b.centre), back * (a.b - b.centre),
-                       [&](const Vec3& p) { return glm::length(glm::max(glm::abs(p) - b.half, Vec3(0.0))); }) -
+                     [&](const Vec3& p) { return glm::length(glm::max(glm::abs(p) - b.half, Vec3(0.0))); }) -
            a.radius;
 }
 
@@ -160,11 +160,11 @@ double distance(const Block& a, const Block& b) noexcept {
 
 double distance(const Capsule& a, const Disc& b) noexcept {
     return min_along(a.a, a.b,
-                       [&](const Vec3& p) {
-                           const double height = glm::dot(p - b.centre, b.normal);
-                           const double out = glm::length(p - b.centre - height * b.normal) - b.radius;
-                           return std::hypot(height, std::max(out, 0.0));
-                       }) -
+                     [&](const Vec3& p) {
+                         const double height = glm::dot(p - b.centre, b.normal);
+                         const double out = glm::length(p - b.centre - height * b.normal) - b.radius;
+                         return std::hypot(height, std::max(out, 0.0));
+                     }) -
            a.radius;
 }
 

@@ -39,8 +39,8 @@ Vec3 y_of(const JawPlane& given, const Vec3& normal, const Vec3& axis, std::size
 JawSide jaw_side(const FibulaInputs& inputs) {
     const std::size_t count = inputs.planes.size();
     if (count < 2 || count > max_planes)
-        throw Error(fmt::format("{} planes: a plan needs 2 to {}, for one to {} segments", count, max_planes,
-                                max_planes - 1));
+        throw Error(
+            fmt::format("{} planes: a plan needs 2 to {}, for one to {} segments", count, max_planes, max_planes - 1));
     JawSide jaw;
     for (std::size_t n = 0; n + 1 < count; ++n) {
         const Vec3 along = inputs.planes[n + 1].origin - inputs.planes[n].origin;

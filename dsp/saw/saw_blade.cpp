@@ -25,8 +25,8 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
         stuck_ = false;
         return contact;
     }
-    const bool jumped = hold_.state() != HoldState::waiting &&
-                        is_jump(last_, pose, 0.5 * shape_.length + shape_.height, drive.dt);
+    const bool jumped =
+        hold_.state() != HoldState::waiting && is_jump(last_, pose, 0.5 * shape_.length + shape_.height, drive.dt);
     if (jumped) {
         teeth_.carry(pose);
         body_.carry(pose);

@@ -98,8 +98,8 @@ int conjugate_gradients(const Problem& problem, int sides, const std::vector<flo
         bool solved = true;
         for (std::size_t s = 0; s < stride; ++s) {
             if (rest[s] < 0.25 * least[s]) least[s] = rest[s], min_at[s] = iteration;
-            solved = solved && (rest[s] <= accuracy.residual * accuracy.residual * scale[s] ||
-                                iteration - min_at[s] >= patience);
+            solved = solved &&
+                     (rest[s] <= accuracy.residual * accuracy.residual * scale[s] || iteration - min_at[s] >= patience);
         }
         return solved;
     };

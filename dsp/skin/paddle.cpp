@@ -211,8 +211,8 @@ Pose paddle_in_leg(const reconstruction::SkinPaddle& paddle, const reconstructio
     return frame_of(paddle.at, x, glm::normalize(out));
 }
 
-std::optional<std::size_t> segment_at(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
-                                      const Vec3& place) {
+std::optional<std::size_t> segment_at(const reconstruction::FibulaInputs& inputs,
+                                      const reconstruction::FibulaPlan& plan, const Vec3& place) {
     const double along = glm::dot(place - inputs.line_point, glm::normalize(inputs.line_direction));
     for (std::size_t n = 0; n < plan.segments.size(); ++n) {
         const auto [low, high] = std::minmax(plan.segments[n].along_line[0], plan.segments[n].along_line[1]);

@@ -55,8 +55,8 @@ struct DrapedPaddle {
 Pose paddle_in_leg(const reconstruction::SkinPaddle& paddle, const reconstruction::FibulaInputs& inputs);
 
 /// The segment on whose bone a place of the donor lies, by its position along the donor's line.
-std::optional<std::size_t> segment_at(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
-                                      const Vec3& place);
+std::optional<std::size_t> segment_at(const reconstruction::FibulaInputs& inputs,
+                                      const reconstruction::FibulaPlan& plan, const Vec3& place);
 
 /// Lays the paddle over `defect`, a closed curve in the frame of the jaw (at least three points that span an area), with its
 /// long axis along the defect's, in the direction that stretches the perforators less. The sheet starts clear of the bone

@@ -50,8 +50,7 @@ Track low_pass(std::span<const AttemptSample> samples, double cutoff) {
     track.begin = samples.front().time;
     track.step = samples.size() > 1 ? median_step(samples) : 1e-3;
     const double length = samples.back().time - track.begin;
-    const std::size_t count =
-        std::min(max_track, static_cast<std::size_t>(std::floor(length / track.step + 1e-6)) + 1);
+    const std::size_t count = std::min(max_track, static_cast<std::size_t>(std::floor(length / track.step + 1e-6)) + 1);
     // Each pass of the filter needs some periods of its frequency to settle; the ends are repeated that long.
     const auto room = static_cast<std::size_t>(std::ceil(0.3 / track.step));
     std::vector<Vec3> values(count + 2 * room);

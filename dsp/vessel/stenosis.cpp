@@ -141,8 +141,7 @@ std::optional<Stenosis> measured_stenosis(const Search& search, const Noise& noi
                                          {branch.nodes[place.node].along, place.reference, place.depth, width});
             if (!narrowing) found.is_uncertain = true;
             // A reference beyond what a vessel may have is that of something else.
-            else if (narrowing->gain < min_gain || narrowing->reference > search.settings.max_radius)
-                narrowing.reset();
+            else if (narrowing->gain < min_gain || narrowing->reference > search.settings.max_radius) narrowing.reset();
         }
         if (narrowing) {
             found.node = nearest_node(branch, narrowing->at);

@@ -72,8 +72,8 @@ double fade_gain(double x, double power_a, double power_b, double correlation_ab
     return got > 0.0 ? std::sqrt(wanted / got) : 1.0;
 }
 
-CycleLoop::CycleLoop(std::span<const float> samples, double sample_rate, double reciprocation_rate,
-                     double output_rate, double max_ratio) {
+CycleLoop::CycleLoop(std::span<const float> samples, double sample_rate, double reciprocation_rate, double output_rate,
+                     double max_ratio) {
     const double period = sample_rate / reciprocation_rate;
     const auto available = std::min(static_cast<double>(samples.size()), longest * sample_rate);
     const auto all_cycles = static_cast<std::size_t>(available / period);

@@ -75,7 +75,8 @@ Grid along(const Grid& in, int held, const Grid& whole, const Grid& layout, int 
             const float weight = taps[row].weight[n];
             for (std::size_t s = 0; s < stride; ++s) to[s] += weight * from[s];
             if (is_copy) return;
-            for (std::size_t s = 0; s < stride; ++s) low[s] = std::min(low[s], from[s]), high[s] = std::max(high[s], from[s]);
+            for (std::size_t s = 0; s < stride; ++s)
+                low[s] = std::min(low[s], from[s]), high[s] = std::max(high[s], from[s]);
         }
         // A cubic overshoots at edges; values that no sample has are artefacts.
         for (std::size_t s = 0; s < stride; ++s) to[s] = std::clamp(to[s], low[s], high[s]);

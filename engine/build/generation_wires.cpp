@@ -68,7 +68,7 @@ void GenerationBuilder::allocate() {
 
 run::Link& GenerationBuilder::link_for(const compile::ScheduleWire& wire) {
     const compile::ScheduleNode &from = plan().nodes[static_cast<std::size_t>(wire.from_node)],
-                            &to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
+                                &to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
     const compile::ScheduleGroup& producer = plan().groups[static_cast<std::size_t>(from.group)];
     const Flicks latency = compile::wire_latency(producer, wire);
     auto& known = links_made_[{&group_of(from), &group_of(to), latency}];

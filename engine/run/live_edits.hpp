@@ -24,7 +24,12 @@ class LiveEdits {
 public:
     LiveEdits(const EngineOptions& options, build::BuildContext& context, Timeline& timeline, Recorder& recorder,
               LiveTime& time)
-        : seconds_(options.seconds), context_(context), timeline_(timeline), recorder_(recorder), time_(time), present_(time) {}
+        : seconds_(options.seconds),
+          context_(context),
+          timeline_(timeline),
+          recorder_(recorder),
+          time_(time),
+          present_(time) {}
     ~LiveEdits();
 
     /// See Engine.

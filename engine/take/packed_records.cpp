@@ -19,7 +19,9 @@ constexpr std::size_t scalar_word = 3, counter_word = 13, flags_word = 20;
 constexpr std::array<std::size_t, RecordPrediction::words> coding_order{0,  1,  2,  4,  5,  6,  3,  7,  8,  9, 10,
                                                                         11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
 
-constexpr bool is_number(std::size_t word) { return word < counter_word || word == 14 || word == 15 || word == 17 || word == 18; }
+constexpr bool is_number(std::size_t word) {
+    return word < counter_word || word == 14 || word == 15 || word == 17 || word == 18;
+}
 
 // Bits of the first byte, beside the kind.
 constexpr unsigned char other_source = 0x10, other_place = 0x20, other_sample = 0x40;
@@ -94,7 +96,8 @@ RecordPrediction::Words RecordPrediction::words_of(const DeviceSample& sample) n
     detail::each_word(sample, [&](const auto& word) { std::memcpy(&all[at++], &word, sizeof word); });
     all[flags_word] = sample.buttons | static_cast<std::uint64_t>(sample.valid) << 32 |
                       static_cast<std::uint64_t>(sample.taken) << 33 |
-                      static_cast<std::uint64_t>(sample.sound_lost) << 34 | static_cast<std::uint64_t>(sample.late) << 35;
+                      static_cast<std::uint64_t>(sample.sound_lost) << 34 |
+                      static_cast<std::uint64_t>(sample.late) << 35;
     return all;
 }
 
@@ -124,7 +127,8 @@ RecordPrediction::Words RecordPrediction::Stream::predicted(TimingKind kind) con
 
 std::uint64_t RecordPrediction::Stream::predicted_scalar(const Words& sample) const noexcept {
     const Words& last = before[0];
-    if (std::equal(&sample[scalar_word + 1], &sample[scalar_word + 4], &last[scalar_word + 1])) return last[scalar_word];
+    if (std::equal(&sample[scalar_word + 1], &sample[scalar_word + 4], &last[scalar_word + 1]))
+        return last[scalar_word];
     const auto number = [&](std::size_t i) { return std::bit_cast<double>(sample[scalar_word + i]); };
     const double square = 1.0 - number(1) * number(1) - number(2) * number(2) - number(3) * number(3);
     if (!(square > 0.0)) return last[scalar_word];
@@ -167,8 +171,8 @@ bool RecordPrediction::has_streams(TimingKind kind) noexcept {
 void RecordPacker::pack(const TimingRecord& record, std::string& out) {
     std::uint32_t& source = known_.last_source(record.kind);
     RecordPrediction::Stream& stream = known_.stream(record.kind, record.source);
-    const bool is_in_place = record.tick == stream.next_tick() && record.count == stream.count &&
-                             record.value == stream.next_value();
+    const bool is_in_place =
+        record.tick == stream.next_tick() && record.count == stream.count && record.value == stream.next_value();
     const RecordPrediction::Words sample = RecordPrediction::words_of(record.sample);
     RecordPrediction::Words expected = stream.predicted(record.kind);
     if (record.kind == TimingKind::device_sample) expected[scalar_word] = stream.predicted_scalar(sample);

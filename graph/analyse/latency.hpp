@@ -17,7 +17,8 @@ struct PathLatency {
 };
 
 /// Largest age, over all activations of the consumer, of the value that a wire between two groups delivers.
-Flicks worst_age(const compile::ScheduleGroup& producer, const compile::ScheduleGroup& consumer, const compile::ScheduleWire& wire);
+Flicks worst_age(const compile::ScheduleGroup& producer, const compile::ScheduleGroup& consumer,
+                 const compile::ScheduleWire& wire);
 
 inline constexpr Flicks unreached = std::numeric_limits<Flicks>::max();
 

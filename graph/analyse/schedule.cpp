@@ -32,8 +32,11 @@ std::vector<ScheduledGroup> schedule_of(const compile::Schedule& plan, const std
     for (const int g : compile::by_priority(plan)) {
         const auto index = static_cast<std::size_t>(g);
         const compile::ScheduleGroup& group = plan.groups[index];
-        groups.push_back({group.name, group.criticality, seconds(compile::call_period(plan, group)),
-                          index < cost_s.size() ? cost_s[index] : 0.0, {}});
+        groups.push_back({group.name,
+                          group.criticality,
+                          seconds(compile::call_period(plan, group)),
+                          index < cost_s.size() ? cost_s[index] : 0.0,
+                          {}});
     }
     for (std::size_t g = 0; g < groups.size(); ++g) groups[g].response_s = response_of(groups, g);
     return groups;

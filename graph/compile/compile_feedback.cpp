@@ -138,7 +138,7 @@ void order_feedback(Schedule& plan) {
         const bool same = plan.nodes[from].group == plan.nodes[to].group && cycle_of[from] == cycle_of[to];
         if (!same || cycle_of[from] < 0) continue;
         ScheduleCycle& cycle = plan.groups[static_cast<std::size_t>(plan.nodes[from].group)]
-                               .cycles[static_cast<std::size_t>(cycle_of[from])];
+                                   .cycles[static_cast<std::size_t>(cycle_of[from])];
         cycle.longest = std::min(cycle.longest, wire.delay);
     }
 }

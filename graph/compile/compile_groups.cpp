@@ -95,7 +95,8 @@ void form_groups(Schedule& plan, patch::Problems& problems) {
     std::vector<int> rank(plan.groups.size());
     std::iota(rank.begin(), rank.end(), 0);
     std::ranges::sort(rank, [&](int a, int b) {
-        const ScheduleGroup &ga = plan.groups[static_cast<std::size_t>(a)], &gb = plan.groups[static_cast<std::size_t>(b)];
+        const ScheduleGroup &ga = plan.groups[static_cast<std::size_t>(a)],
+                            &gb = plan.groups[static_cast<std::size_t>(b)];
         return ga.period != gb.period ? ga.period < gb.period : ga.name < gb.name;
     });
     std::vector<ScheduleGroup> sorted;

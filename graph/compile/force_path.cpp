@@ -52,7 +52,8 @@ void rank_groups(Schedule& plan) {
     for (std::size_t n = 0; n < plan.nodes.size(); ++n)
         if (drives_device(plan.nodes[n])) sinks.push_back(static_cast<int>(n));
     const std::vector<Dependence> dependence = dependence_on(plan, sinks);
-    for (ScheduleGroup& group : plan.groups) group.criticality = group.has_audio ? Criticality::sound : Criticality::other;
+    for (ScheduleGroup& group : plan.groups)
+        group.criticality = group.has_audio ? Criticality::sound : Criticality::other;
     const auto raise = [&plan](std::size_t node, Criticality to) {
         ScheduleGroup& group = plan.groups[static_cast<std::size_t>(plan.nodes[node].group)];
         group.criticality = std::min(group.criticality, to);

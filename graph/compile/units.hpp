@@ -2,8 +2,8 @@
 // Units of the values on wires.
 #pragma once
 
-#include "graph/formula/measure.hpp"
 #include "graph/compile/schedule.hpp"
+#include "graph/formula/measure.hpp"
 
 #include <cstdint>
 #include <optional>

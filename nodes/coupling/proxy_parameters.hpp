@@ -35,7 +35,8 @@ struct ProxyParameters {
     Param max_force{"10 N", "0 N", "100 N", "limit of the spring force"};
     Param static_friction{"0", "0", "2", "coefficient of static friction"};
     Param dynamic_friction{"0", "0", "2", "coefficient of sliding friction; at most the static one"};
-    Param texture_height{"0 mm", "0 mm", "2 mm", "of a wave texture on the surface, from mean to crest; the mean is the surface"};
+    Param texture_height{"0 mm", "0 mm", "2 mm",
+                         "of a wave texture on the surface, from mean to crest; the mean is the surface"};
     Param texture_length{"2 mm", "0.1 mm", "100 mm", "wavelength of the texture along each axis of a body"};
     Param step{"0.25 mm", "0.001 mm", "10 mm",
                "step length along a distance field; at most half of its thinnest wall; never more than half a voxel"};

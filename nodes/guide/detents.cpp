@@ -15,8 +15,8 @@ struct Detents {
 
     In<Pose> pose{"of the hand", "m"};
     In<Twist> twist{optional, "of the hand; open: no damping", "m/s, rad/s"};
-    In<Pose> frame{optional, of_world,
-                   "the guide's frame; open: the world. A frame that moves does work on the hand", "m"};
+    In<Pose> frame{optional, of_world, "the guide's frame; open: the world. A frame that moves does work on the hand",
+                   "m"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<double> notch{"number of the nearest notch; 0 is at 'first'"};
     Vector axis{"1, 0, 0", "along which the notches lie"};

@@ -19,8 +19,8 @@ struct Dial {
 
     In<Pose> pose{"of the hand", "m"};
     In<Twist> twist{optional, "of the hand; open: no damping", "m/s, rad/s"};
-    In<Pose> frame{optional, of_world,
-                   "the knob's frame; open: the world. A frame that turns does work on the hand", "m"};
+    In<Pose> frame{optional, of_world, "the knob's frame; open: the world. A frame that turns does work on the hand",
+                   "m"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<double> angle{"of the hand about the axis", "rad"};
     Out<double> notch{"number of the nearest notch, from 0 on"};

@@ -9,8 +9,8 @@ struct PointGuide {
 
     In<Pose> pose{"of the hand", "m"};
     In<Twist> twist{optional, "of the hand; open: no damping", "m/s, rad/s"};
-    In<Pose> frame{optional, of_world,
-                   "the guide's frame; open: the world. A frame that moves does work on the hand", "m"};
+    In<Pose> frame{optional, of_world, "the guide's frame; open: the world. A frame that moves does work on the hand",
+                   "m"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<double> distance{"from the point", "m"};
     Vector point{"0 mm, 0 mm, 0 mm", "where it pulls to"};

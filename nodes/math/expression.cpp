@@ -66,8 +66,8 @@ public:
                 throw Error(constants.where, "'" + value.name + "' is an input already");
         formula::Formula compiled = read_text(
             setup, formula, [&](const std::string& text) { return formula::compile_formula(text, names, values); });
-        const formula::Measure wanted = read_text(
-            setup, unit, [](const std::string& text) { return formula::parse_measured_unit(text).measure; });
+        const formula::Measure wanted =
+            read_text(setup, unit, [](const std::string& text) { return formula::parse_measured_unit(text).measure; });
         if (!(compiled.measure == wanted))
             throw Error(unit.value.empty() ? formula.where : unit.where,
                         "the formula gives " + compiled.measure.text() + ", but 'unit' says " + wanted.text());
@@ -141,8 +141,7 @@ private:
     }
     static constexpr ValueKinds types = kinds::number | kinds::signal;
 
-    void check_wires(const Setup& setup, const std::vector<formula::Variable>& names,
-                     const formula::Program& program) {
+    void check_wires(const Setup& setup, const std::vector<formula::Variable>& names, const formula::Program& program) {
         const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
         uses_ = 0;
         for (std::size_t i = 0; i < std::size(ports); ++i) {

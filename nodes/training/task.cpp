@@ -48,7 +48,8 @@ struct Task {
 
     In<Pose> pose{"of the blade: x along the stroke, y into the bone, origin in the middle of the tooth edge"};
     In<Wrench> force{optional, "on the hand, after all limits: device_output.applied", "N, N m"};
-    In<bool> contact{optional, "the blade touches the bone; unconnected: a force passed 0.05 N and has not fallen below 0.02 N"};
+    In<bool> contact{optional,
+                     "the blade touches the bone; unconnected: a force passed 0.05 N and has not fallen below 0.02 N"};
     In<double> removed{optional, "volume removed since the start", "m^3"};
     In<double> heat{optional, "time that bone was above the temperature that harms it", "s"};
     Out<double> distance{"of the middle of the tooth edge from the planned plane, along its normal", "m"};

@@ -83,7 +83,8 @@ TEST_CASE("a wall below the limit of the sheet comes to rest, one above it hums"
     for (const double damping : {1.0, 2.0, 5.0})
         for (const int delay : {0, 1, 2}) {
             const compile::Schedule plan = compile_text(pressed_on_a_wall(1.0, delay));
-            const auto loops = analyse::force_loops(plan, [&](const std::string&) { return DeviceInfo{.name = {}, .damping = damping}; });
+            const auto loops = analyse::force_loops(
+                plan, [&](const std::string&) { return DeviceInfo{.name = {}, .damping = damping}; });
             REQUIRE(loops.size() == 1);
             const double limit = loops[0].limit * 1e-3;
             CAPTURE(damping, delay, limit);

@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 
 const fs::path root = tactus::test::source_folder();
 constexpr std::array<std::string_view, 7> rooms{"dsp", "assets", "graph", "devices", "nodes", "engine", "tools"};
-constexpr std::array<std::string_view, 7> tool_rooms{"run", "analysis", "render", "report", "window", "command", "bench"};
+constexpr std::array<std::string_view, 7> tool_rooms{"run",    "analysis", "render", "report",
+                                                     "window", "command",  "bench"};
 
 std::string read(const fs::path& file) {
     std::ifstream stream(file);

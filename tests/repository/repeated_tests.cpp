@@ -49,7 +49,8 @@ public:
 
     /// The exit code of './dev test'.
     int test() {
-        for (const char* label : {"fast", "slow", "display", "kernel", "live"}) add(std::string("some_") + label, label, 0);
+        for (const char* label : {"fast", "slow", "display", "kernel", "live"})
+            add(std::string("some_") + label, label, 0);
         folder_.write("build/release/CTestTestfile.cmake", tests_);
         const std::string line =
             "PATH='" + path("bin") + "':\"$PATH\" bash '" + path("dev") + "' test >'" + path("out") + "' 2>&1";

@@ -21,8 +21,8 @@ inline void* next_definition(std::atomic<void*>& cached, const char* name) noexc
 }  // namespace tactus::test
 
 /// TACTUS_NEXT(nanosleep)(&duration, &left) calls what `nanosleep` would be without the program's own definition.
-#define TACTUS_NEXT(function)                                            \
-    reinterpret_cast<decltype(&function)>([]() noexcept -> void* {      \
-        static std::atomic<void*> cached{nullptr};                       \
-        return ::tactus::test::next_definition(cached, #function);       \
+#define TACTUS_NEXT(function)                                      \
+    reinterpret_cast<decltype(&function)>([]() noexcept -> void* { \
+        static std::atomic<void*> cached{nullptr};                 \
+        return ::tactus::test::next_definition(cached, #function); \
     }())

@@ -153,8 +153,8 @@ int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
 }
 
 int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* until) {
-    TACTUS_PASS_ON_UNLESS_VIRTUAL(wait(condition, mutex, CLOCK_REALTIME, until), pthread_cond_timedwait, waits, condition,
-                                  mutex, until);
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(wait(condition, mutex, CLOCK_REALTIME, until), pthread_cond_timedwait, waits,
+                                  condition, mutex, until);
 }
 
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
@@ -171,7 +171,8 @@ int clock_nanosleep(clockid_t clock, int flags, const timespec* duration, timesp
 }
 
 int usleep(useconds_t duration) {
-    TACTUS_PASS_ON_UNLESS_VIRTUAL(sleep_for({duration / 1'000'000, duration % 1'000'000 * 1'000L}), usleep, waits, duration);
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(sleep_for({duration / 1'000'000, duration % 1'000'000 * 1'000L}), usleep, waits,
+                                  duration);
 }
 
 int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept { TACTUS_PASS_ON(pthread_mutex_trylock, locks, mutex); }

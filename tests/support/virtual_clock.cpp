@@ -117,8 +117,12 @@ namespace {
 class Scheduler {
 public:
     Scheduler(std::uint64_t seed, const VirtualClock::Lateness& lateness)
-        : lateness_(lateness), random_(seed), begin_ns_(real_ns(CLOCK_MONOTONIC)), now_ns_(begin_ns_),
-          boot_ahead_ns_(real_ns(CLOCK_BOOTTIME) - begin_ns_), date_ahead_ns_(real_ns(CLOCK_REALTIME) - begin_ns_) {}
+        : lateness_(lateness),
+          random_(seed),
+          begin_ns_(real_ns(CLOCK_MONOTONIC)),
+          now_ns_(begin_ns_),
+          boot_ahead_ns_(real_ns(CLOCK_BOOTTIME) - begin_ns_),
+          date_ahead_ns_(real_ns(CLOCK_REALTIME) - begin_ns_) {}
 
     Thread* add() noexcept {
         const Hold hold(lock_);
@@ -573,8 +577,7 @@ long syscall(long number, ...) noexcept {
     if (number == SYS_futex && virtual_time::scheduler.load() != nullptr) {
         const auto* const word = reinterpret_cast<const std::atomic<int>*>(a[0]);
         const int operation = static_cast<int>(a[1]) & FUTEX_CMD_MASK;
-        if (operation == FUTEX_WAKE || operation == FUTEX_WAKE_BITSET)
-            virtual_time::wake(word, a[2] != 1);
+        if (operation == FUTEX_WAKE || operation == FUTEX_WAKE_BITSET) virtual_time::wake(word, a[2] != 1);
         if (virtual_time::current && (operation == FUTEX_WAIT || operation == FUTEX_WAIT_BITSET)) {
             if (word->load() != static_cast<int>(a[2])) {
                 errno = EAGAIN;

@@ -147,11 +147,12 @@ void bench_scaling(int rounds, Json& rows) {
     for (int i = 0; i < rounds; ++i)
         for (std::size_t k = 0; k < sizes.size(); ++k) {
             const std::string text = patch_of(sizes[k]);
-            checked[k] = std::min(checked[k], seconds_of([&] {
-                                      const run::Engine engine(compile_chain(read_chain(text)), run::EngineOptions{});
-                                      analyse::path_latencies(engine.plan());
-                                      analyse::force_loops(engine.plan(), [](const std::string&) { return DeviceInfo{}; });
-                                  }));
+            checked[k] =
+                std::min(checked[k], seconds_of([&] {
+                             const run::Engine engine(compile_chain(read_chain(text)), run::EngineOptions{});
+                             analyse::path_latencies(engine.plan());
+                             analyse::force_loops(engine.plan(), [](const std::string&) { return DeviceInfo{}; });
+                         }));
             rendered[k] = std::min(rendered[k], seconds_of([&] {
                                        run::EngineOptions options;
                                        options.seconds = brief;
@@ -189,8 +190,8 @@ void bench_edit(int rounds, const std::filesystem::path& folder, Json& rows) {
         patch::Patch patch;
         read = std::min(read, seconds_of([&] { patch = patch::load_patch(file, problems); }));
         std::optional<compile::Schedule> plan;
-        compiled = std::min(compiled,
-                            seconds_of([&] { plan = run::plan_of(std::move(patch), {}, {}, nullptr, problems); }));
+        compiled =
+            std::min(compiled, seconds_of([&] { plan = run::plan_of(std::move(patch), {}, {}, nullptr, problems); }));
         built = std::min(built, seconds_of([&] { engine.schedule(std::move(*plan), flicks_per_second); }));
     }
     rows.push_back(row("edit: read", nodes, 0, read * 1e9 / nodes, nullptr));

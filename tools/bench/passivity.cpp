@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/json.hpp"
-#include "tools/bench/bench.hpp"
 #include "tools/analysis/passivity/bounces.hpp"
+#include "tools/bench/bench.hpp"
 
 #include <fmt/format.h>
 

@@ -8,15 +8,15 @@
 #include "dsp/saw/heat_partition.hpp"
 #include "dsp/saw/kerf_heat.hpp"
 #include "dsp/saw/published.hpp"
-#include "tools/bench/bench.hpp"
-#include "tools/report/figures/comparison_figure.hpp"
-#include "tools/report/figures/saw_figure.hpp"
 #include "tools/analysis/saw/bone_trial.hpp"
 #include "tools/analysis/saw/burr_trial.hpp"
 #include "tools/analysis/saw/device_trial.hpp"
 #include "tools/analysis/saw/grid_study.hpp"
 #include "tools/analysis/saw/saw_trial.hpp"
 #include "tools/analysis/saw/solid_sweep.hpp"
+#include "tools/bench/bench.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/saw_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -350,8 +350,8 @@ int bench_poses(const SawBenchChoice& choice) {
     const std::pair<const char*, bone::Bone> bones[] = {{"box", analysis::box_of_voxels(0.4e-3)},
                                                         {"jaw", library::make_mandible()}};
     constexpr std::pair<const char*, analysis::SolidTool> tools[] = {{"blade", analysis::SolidTool::blade},
-                                                                  {"sagittal blade", analysis::SolidTool::sagittal},
-                                                                  {"burr", analysis::SolidTool::burr}};
+                                                                     {"sagittal blade", analysis::SolidTool::sagittal},
+                                                                     {"burr", analysis::SolidTool::burr}};
     for (const auto& [bone_name, bone] : bones)
         for (const auto& [name, tool] : tools) {
             const analysis::SolidSweepResult r = analysis::run_solid_sweep(tool, bone, (choice.poses + 5) / 6);

@@ -5,6 +5,7 @@
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/fit.hpp"
+#include "tools/analysis/bone/fragment_file.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/snap_cases.hpp"
 #include "tools/bench/snap_live.hpp"
@@ -12,7 +13,6 @@
 #include "tools/bench/snap_tally.hpp"
 #include "tools/bench/snap_whole_case.hpp"
 #include "tools/command/old_words.hpp"
-#include "tools/analysis/bone/fragment_file.hpp"
 
 #include <fmt/format.h>
 

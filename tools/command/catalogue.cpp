@@ -3,26 +3,26 @@
 #include "tools/command/catalogue.hpp"
 
 // name, folder, heading of the help text
-#define TACTUS_VERBS(X)                   \
-    X(new, run, run_and_patch)            \
-    X(run, run, run_and_patch)            \
-    X(render, run, run_and_patch)         \
-    X(check, run, run_and_patch)          \
-    X(draw, run, run_and_patch)           \
-    X(nodes, machine, run_and_patch)      \
-    X(set, run, run_and_patch)            \
-    X(trigger, run, run_and_patch)        \
-    X(replay, run, run_and_patch)         \
-    X(view, run, run_and_patch)           \
-    X(spectrum, vibration, vibrations)    \
-    X(orders, vibration, vibrations)      \
-    X(response, vibration, vibrations)    \
-    X(compare, vibration, vibrations)     \
-    X(validate, vibration, vibrations)    \
-    X(measure, vibration, vibrations)     \
-    X(equalise, vibration, vibrations)    \
-    X(model, vibration, vibrations)       \
-    X(exposure, vibration, vibrations)    \
+#define TACTUS_VERBS(X)                  \
+    X(new, run, run_and_patch)           \
+    X(run, run, run_and_patch)           \
+    X(render, run, run_and_patch)        \
+    X(check, run, run_and_patch)         \
+    X(draw, run, run_and_patch)          \
+    X(nodes, machine, run_and_patch)     \
+    X(set, run, run_and_patch)           \
+    X(trigger, run, run_and_patch)       \
+    X(replay, run, run_and_patch)        \
+    X(view, run, run_and_patch)          \
+    X(spectrum, vibration, vibrations)   \
+    X(orders, vibration, vibrations)     \
+    X(response, vibration, vibrations)   \
+    X(compare, vibration, vibrations)    \
+    X(validate, vibration, vibrations)   \
+    X(measure, vibration, vibrations)    \
+    X(equalise, vibration, vibrations)   \
+    X(model, vibration, vibrations)      \
+    X(exposure, vibration, vibrations)   \
     X(import, bone, bones)               \
     X(info, bone, bones)                 \
     X(segment, bone, bones)              \
@@ -33,42 +33,42 @@
     X(fracture_surface, bone, fractures) \
     X(snap, bone, fractures)             \
     X(flap, bone, fractures)             \
-    X(plan, plan, fractures)          \
-    X(session, training, training)        \
-    X(score, training, training)          \
-    X(experiment, experiment, research)   \
+    X(plan, plan, fractures)             \
+    X(session, training, training)       \
+    X(score, training, training)         \
+    X(experiment, experiment, research)  \
     X(gripper, gripper, grippers)        \
     X(calibrate, display, displays)      \
-    X(devices, machine, machine)          \
-    X(cache, machine, machine)            \
-    X(bench, machine, machine)            \
+    X(devices, machine, machine)         \
+    X(cache, machine, machine)           \
+    X(bench, machine, machine)           \
     X(generate, machine, machine)
 
-#define TACTUS_PLAN_VERBS(X)         \
-    X(plan_new, plan)            \
-    X(plan_show, plan)           \
-    X(plan_check, plan)          \
-    X(plan_move, plan)           \
-    X(plan_group, plan)          \
-    X(plan_add, plan)            \
-    X(plan_remove, plan)         \
-    X(plan_ungroup, plan)        \
-    X(plan_lock, plan)           \
-    X(plan_unlock, plan)         \
-    X(plan_hide, plan)           \
-    X(plan_unhide, plan)         \
-    X(plan_repaint, plan)        \
-    X(plan_undo, plan)           \
-    X(plan_redo, plan)           \
-    X(plan_alternative, plan)    \
-    X(plan_snap, plan)           \
-    X(plan_settle, plan)         \
-    X(plan_accept, plan)         \
-    X(plan_assemble, plan)       \
-    X(plan_mirror, plan)         \
-    X(plan_gap, plan)            \
-    X(plan_export, plan)         \
-    X(plan_report, plan)         \
+#define TACTUS_PLAN_VERBS(X)            \
+    X(plan_new, plan)                   \
+    X(plan_show, plan)                  \
+    X(plan_check, plan)                 \
+    X(plan_move, plan)                  \
+    X(plan_group, plan)                 \
+    X(plan_add, plan)                   \
+    X(plan_remove, plan)                \
+    X(plan_ungroup, plan)               \
+    X(plan_lock, plan)                  \
+    X(plan_unlock, plan)                \
+    X(plan_hide, plan)                  \
+    X(plan_unhide, plan)                \
+    X(plan_repaint, plan)               \
+    X(plan_undo, plan)                  \
+    X(plan_redo, plan)                  \
+    X(plan_alternative, plan)           \
+    X(plan_snap, plan)                  \
+    X(plan_settle, plan)                \
+    X(plan_accept, plan)                \
+    X(plan_assemble, plan)              \
+    X(plan_mirror, plan)                \
+    X(plan_gap, plan)                   \
+    X(plan_export, plan)                \
+    X(plan_report, plan)                \
     X(plan_fibula, reconstruction)      \
     X(plan_reconstruct, reconstruction) \
     X(plan_plate, reconstruction)       \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/command/catalogue.hpp"
 #include "tools/analysis/beside.hpp"
+#include "tools/command/catalogue.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -5,10 +5,10 @@
 #include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
 #include "engine/observe/observer.hpp"
+#include "tools/analysis/beside.hpp"
 #include "tools/render/made_body.hpp"
 #include "tools/render/scene_outline.hpp"
 #include "tools/render/section_grey.hpp"
-#include "tools/analysis/beside.hpp"
 
 #include <chrono>
 #include <filesystem>

@@ -3,10 +3,10 @@
 #include "assets/plan/plan_file.hpp"
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/leaving.hpp"
 #include "tools/render/node_of.hpp"
 #include "tools/render/scene_colours.hpp"
 #include "tools/render/scene_model.hpp"
-#include "tools/analysis/leaving.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

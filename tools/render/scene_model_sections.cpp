@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What sections of bones and bodies show: their density.
+#include "tools/analysis/leaving.hpp"
 #include "tools/render/scene_model.hpp"
 #include "tools/render/section_grey.hpp"
-#include "tools/analysis/leaving.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -8,11 +8,11 @@
 #include "dsp/reconstruction/pedicle.hpp"
 #include "dsp/vessel/line_branch.hpp"
 #include "dsp/vessel/tube_surface.hpp"
+#include "tools/analysis/leaving.hpp"
+#include "tools/analysis/plan/flap_study.hpp"
 #include "tools/render/scene_colours.hpp"
 #include "tools/render/scene_model.hpp"
 #include "tools/render/triangle_patch.hpp"
-#include "tools/analysis/leaving.hpp"
-#include "tools/analysis/plan/flap_study.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

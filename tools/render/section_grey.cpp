@@ -51,8 +51,7 @@ std::vector<volume::Grid> read_densities(const std::filesystem::path& file) {
             return grids;
         }
         for (const plan::PlanFragment& fragment : plan::fragments_of(plan::load_case_plan(file)))
-            grids.push_back(
-                std::move(plan::bone_from_file(plan::file_of(fragment.file, file.parent_path())).density));
+            grids.push_back(std::move(plan::bone_from_file(plan::file_of(fragment.file, file.parent_path())).density));
     } catch (const Error&) {
         grids.clear();  // the run says what is wrong
     }

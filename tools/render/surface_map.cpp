@@ -3,9 +3,9 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/fit/gap.hpp"
-#include "tools/render/body_surface.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/render/body_surface.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -45,7 +45,8 @@ std::string force_text(const Report& report) {
     if (fraction >= 0.0) text += "\n";
     if (const double limited = number_in(report, "contact", "limited_fraction"); limited >= 0.005)
         text += fmt::format(
-            "  the force was limited {:.0f} % of the time in contact: the tool wanted more than the device gives, and cut "
+            "  the force was limited {:.0f} % of the time in contact: the tool wanted more than the device gives, and "
+            "cut "
             "with what it gave\n",
             100.0 * limited);
     if (const double scale = number_in(report, "force", "device_scale", 1.0); scale != 1.0)
@@ -53,8 +54,8 @@ std::string force_text(const Report& report) {
     if (const double waited = number_in(report, "contact", "waited_s"); waited >= 0.0005)
         text += fmt::format("  for {:.3g} s the tool lay in bone without force, until it was drawn out\n", waited);
     if (const double released = number_in(report, "contact", "releases"); released > 0.0)
-        text += fmt::format("  the tool was released from the bone {:.0f} time{}\n", released,
-                            released == 1.0 ? "" : "s");
+        text +=
+            fmt::format("  the tool was released from the bone {:.0f} time{}\n", released, released == 1.0 ? "" : "s");
     if (off > 0.0)
         text += fmt::format(
             "  forces were off for {:.3g} s in contact, from {:.3f} s to {:.3f} s{}: the hand did not feel what it "

@@ -104,8 +104,8 @@ fs::path find_display(const std::string& name) {
 }
 
 std::optional<compile::Schedule> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides,
-                                     std::optional<std::uint64_t> seed, compile::AssetCache* assets,
-                                     patch::Problems& problems) {
+                                         std::optional<std::uint64_t> seed, compile::AssetCache* assets,
+                                         patch::Problems& problems) {
     patch::read_parts(patch);
     patch::apply_overrides(patch, overrides, problems);
     if (seed) patch.seed = *seed;

@@ -36,8 +36,8 @@ std::filesystem::path find_observer_model(const std::string& name);
 /// Applies overrides and `seed` to a patch and compiles it; loads assets when `assets` is not null. Adds to `problems`,
 /// which may already contain those of reading; with problems there may be no plan.
 std::optional<compile::Schedule> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides,
-                                     std::optional<std::uint64_t> seed, compile::AssetCache* assets,
-                                     patch::Problems& problems);
+                                         std::optional<std::uint64_t> seed, compile::AssetCache* assets,
+                                         patch::Problems& problems);
 
 /// Reads and compiles, without assets. Problems are collected.
 std::optional<compile::Schedule> read_plan(const PatchChoice& choice, patch::Problems& problems);

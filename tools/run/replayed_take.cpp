@@ -15,7 +15,7 @@ namespace {
 compile::Schedule plan_in(const take::Take& take, const std::string& text, compile::AssetCache& assets) {
     patch::Problems problems;
     std::optional<compile::Schedule> plan = plan_of(patch::read_patch(text, take.about.patch_file, problems),
-                                                take.about.overrides, take.about.seed, &assets, problems);
+                                                    take.about.overrides, take.about.seed, &assets, problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }

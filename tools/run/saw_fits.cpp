@@ -70,7 +70,7 @@ void check_saw(const compile::Schedule& plan, patch::Problems& problems) {
     for (const compile::ScheduleWire& wire : plan.wires) {
         if (wire.from_node < 0 || wire.to_node < 0) continue;
         const compile::ScheduleNode &from = plan.nodes[static_cast<std::size_t>(wire.from_node)],
-                                &to = plan.nodes[static_cast<std::size_t>(wire.to_node)];
+                                    &to = plan.nodes[static_cast<std::size_t>(wire.to_node)];
         const bool saw = is(from, "saw_blade"), burr = is(from, "burr");
         if ((saw || burr) && is(to, "carve")) {
             const char* const name = saw ? "kerf" : "diameter";

@@ -2,8 +2,8 @@
 // Runs window commands from a file, line by line: for tests, and for the pictures of the documentation.
 #pragma once
 
-#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/files/script_line.hpp"
+#include "tools/window/widgets/canvas.hpp"
 
 #include <filesystem>
 #include <functional>

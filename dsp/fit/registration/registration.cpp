@@ -333,9 +333,9 @@ JudgedRegistration search_registration(std::span<const contact::SurfacePoint> mo
                                        const RegistrationTarget& fixed, const Pose* start,
                                        const RegistrationSettings& settings) {
     if (moving.empty()) throw Error("there is no surface to register");
-    constexpr std::size_t refined = 4;       // poses
+    constexpr std::size_t refined = 4;  // poses
     constexpr double clearly_better = 0.75, as_good = 0.95;  // of a rival's score
-    constexpr double comes_together = 0.6;   // of the limit of a distance
+    constexpr double comes_together = 0.6;  // of the limit of a distance
     const PoseScore score(moving, fixed_points);
     std::vector<JudgedRegistration::Rival> coarse;
     for (const Registration& each : coarse_registrations(moving, fixed_points, fixed, settings))

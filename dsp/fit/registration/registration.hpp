@@ -62,9 +62,9 @@ Registration register_from_anywhere(std::span<const contact::SurfacePoint> movin
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings = {});
 
 enum class RegistrationVerdict : std::uint8_t {
-    fit,        ///< one pose is clearly better than all others
+    fit,  ///< one pose is clearly better than all others
     ambiguous,  ///< another pose fits about as well, as for a shape that is nearly symmetric
-    none        ///< no pose brings the surfaces together
+    none  ///< no pose brings the surfaces together
 };
 
 struct JudgedRegistration {

@@ -135,7 +135,9 @@ Alignment delay_of_blocks(std::span<const double> reference, std::span<const dou
             const std::size_t from = std::min(j * block, reference.size() - std::min(reference.size(), 2 * block));
             if (from + 2 * block > reference.size()) continue;
             Alignment found = delay_between(reference.subspan(from, 2 * block), padded, wanted);
-            found.delay += (static_cast<double>(i * block) - static_cast<double>(block / 2) - static_cast<double>(from)) / wanted.rate;
+            found.delay +=
+                (static_cast<double>(i * block) - static_cast<double>(block / 2) - static_cast<double>(from)) /
+                wanted.rate;
             if (found.significant && std::abs(found.delay) <= longest && found.significance > best.significance)
                 best = found;
         }

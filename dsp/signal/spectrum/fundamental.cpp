@@ -112,10 +112,9 @@ FundamentalStream::Path FundamentalStream::best_path() const {
             for (std::size_t origin = 0; origin < states; ++origin) {
                 if (i > 0 && origin >= sections_[i - 1].count && origin + 1 < states) continue;
                 const double before = i > 0 ? frequency_of(i - 1, origin) : 0.0;
-                const double cost =
-                    here > 0.0 && before > 0.0
-                        ? std::min(max_step, step_cost * std::abs(std::log(here / before)))
-                        : 0.5 * max_step * static_cast<double>((here > 0.0) != (before > 0.0) && i > 0);
+                const double cost = here > 0.0 && before > 0.0
+                                        ? std::min(max_step, step_cost * std::abs(std::log(here / before)))
+                                        : 0.5 * max_step * static_cast<double>((here > 0.0) != (before > 0.0) && i > 0);
                 if (total[origin] - cost + score > next[state]) {
                     next[state] = total[origin] - cost + score;
                     from[i][state] = origin;

@@ -94,9 +94,7 @@ TEST_CASE("a chunk of a bone file that is not as long as its node is refused, pa
             // All places at which a number might be the size of a chunk; a negative one is that of whole floats.
             for (std::size_t at = tree; at + 8 <= std::min(next, bytes.size()); ++at) {
                 const auto old = number_at<std::int64_t>(bytes, at);
-                if (old == 0 || old > 150000 || old < -150000 || (old > 0 && old % 256 == 0) ||
-                    old % 4 < 0)
-                    continue;
+                if (old == 0 || old > 150000 || old < -150000 || (old > 0 && old % 256 == 0) || old % 4 < 0) continue;
                 for (const std::int64_t size :
                      {std::int64_t{-1} << 20, std::int64_t{1} << 20, -old - 4, old + 4, INT64_MIN, INT64_MAX}) {
                     CAPTURE(packing, at, old, size);

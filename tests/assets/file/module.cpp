@@ -21,6 +21,7 @@ TEST_CASE("a missing module is an error that names the two places where it may b
 }
 
 TEST_CASE("a module of another version is an error that names the function it lacks") {
-    CHECK_THROWS_WITH(file::load_module(bone::vdb_module, "tactus_other_codec"),
-                      ContainsSubstring("cannot load a part of this program: ") && ContainsSubstring("tactus_other_codec"));
+    CHECK_THROWS_WITH(
+        file::load_module(bone::vdb_module, "tactus_other_codec"),
+        ContainsSubstring("cannot load a part of this program: ") && ContainsSubstring("tactus_other_codec"));
 }

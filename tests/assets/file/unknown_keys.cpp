@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A misspelt name in a file that a person writes would be a default that nobody asked for: every reader refuses it.
-#include "assets/plan/paint_file.hpp"
 #include "assets/display/display_file.hpp"
 #include "assets/display/touch_file.hpp"
 #include "assets/file/json.hpp"
+#include "assets/plan/paint_file.hpp"
 #include "assets/reconstruction/fibula_inputs.hpp"
 #include "assets/reconstruction/flap_files.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
@@ -102,7 +102,9 @@ TEST_CASE("an unknown key anywhere in JSON that a person writes is refused with 
              reconstruction::flap_of_inputs(Json::parse(text), "f.json");
          }},
         {seed_text("seeds_file.seeds/two.json"),
-         [](const std::string& text) { segmentation::seeds_of_text(text, "f.json", segmentation::SeedsUse::segmentation); }},
+         [](const std::string& text) {
+             segmentation::seeds_of_text(text, "f.json", segmentation::SeedsUse::segmentation);
+         }},
         {seed_text("paint_file.seeds/strokes.json"), [](const std::string& text) {
              std::vector<contact::SurfacePoint> none;
              plan::paint_from_text(none, text, "f.json", false);

@@ -24,9 +24,21 @@ using Triangles = std::vector<std::array<Vec3, 3>>;
 
 /// A box with its faces outwards, or inwards.
 Triangles box_of(const Vec3& low, const Vec3& high, bool is_inwards = false) {
-    constexpr std::array<std::array<int, 3>, 12> faces{{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}}};
-    const auto corner = [&](int n) { return Vec3(n & 1 ? high.x : low.x, n & 2 ? high.y : low.y, n & 4 ? high.z : low.z); };
+    constexpr std::array<std::array<int, 3>, 12> faces{{{0, 2, 1},
+                                                        {1, 2, 3},
+                                                        {4, 5, 6},
+                                                        {5, 7, 6},
+                                                        {0, 1, 4},
+                                                        {1, 5, 4},
+                                                        {2, 6, 3},
+                                                        {3, 6, 7},
+                                                        {0, 4, 2},
+                                                        {2, 4, 6},
+                                                        {1, 3, 5},
+                                                        {3, 7, 5}}};
+    const auto corner = [&](int n) {
+        return Vec3(n & 1 ? high.x : low.x, n & 2 ? high.y : low.y, n & 4 ? high.z : low.z);
+    };
     Triangles out;
     for (const auto& f : faces)
         out.push_back(is_inwards ? std::array{corner(f[0]), corner(f[2]), corner(f[1])}
@@ -89,7 +101,8 @@ TEST_CASE("a hollow body keeps its hollow, whichever way the whole is turned, an
     for (const bool is_turned : {false, true}) {
         CAPTURE(is_turned);
         file::write_whole_file(place / "hollow.stl", binary_stl(is_turned ? turned(all) : all));
-        const bone::ImportSummary largest = imported(place / "hollow.stl"), whole = imported(place / "hollow.stl", "all");
+        const bone::ImportSummary largest = imported(place / "hollow.stl"),
+                                  whole = imported(place / "hollow.stl", "all");
         CHECK(largest.bone_volume_mm3 == Approx(7000.0).epsilon(0.02));
         CHECK(largest.components == 2);
         CHECK(largest.components_kept == 1);
@@ -118,33 +131,40 @@ TEST_CASE("every body of an STL is read, in text of any case, and bytes that are
 TEST_CASE("triangle strips of a PLY are read with their turns, other elements are counted") {
     const TemporaryFolder place;
     // A tetrahedron as one strip and a face.
-    const std::string head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
     const std::string points = "0 0 0\n10 0 0\n0 10 0\n0 0 10\n";
-    file::write_whole_file(place / "strip.ply", head + "element tristrips 1\nproperty list int int vertex_indices\n"
-                                                       "element edge 1\nproperty int a\nproperty int b\nend_header\n" +
+    file::write_whole_file(place / "strip.ply", head +
+                                                    "element tristrips 1\nproperty list int int vertex_indices\n"
+                                                    "element edge 1\nproperty int a\nproperty int b\nend_header\n" +
                                                     points + "10 0 2 1 3 -1 0 1 3 -1 3\n0 1\n");
     mesh::MeshOrigin origin;
     const mesh::Mesh strip = mesh::load_mesh(place / "strip.ply", 1.0, &origin);
     CHECK(strip.triangles.size() == 3);
     CHECK_THAT(fmt::format("{}", fmt::join(origin.notes, ";")), ContainsSubstring("1 elements 'edge'"));
-    file::write_whole_file(place / "closed.ply", head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
-                                                     points + "6 0 2 1 3 0 2\n");
+    file::write_whole_file(
+        place / "closed.ply",
+        head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + points + "6 0 2 1 3 0 2\n");
     const mesh::Mesh closed = mesh::load_mesh(place / "closed.ply");
     CHECK(mesh::topology_of(closed).is_watertight());
     CHECK(mesh::volume_of(closed) == Approx(1000.0 / 6.0));
-    file::write_whole_file(place / "wrong.ply", head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
-                                                    points + "3 0 1 9\n");
+    file::write_whole_file(
+        place / "wrong.ply",
+        head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + points + "3 0 1 9\n");
     CHECK_THROWS_AS(mesh::load_mesh(place / "wrong.ply"), Error);
 }
 
 TEST_CASE("an OBJ with continued lines and a byte-order mark is read, its lines and points are counted") {
     const TemporaryFolder place;
-    file::write_whole_file(place / "a.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 \\\n0\r\nv 0 1 0\nv 0 0 1\nf 1 \\\r\n 2 \\\n3\nf 1 3 4 # a comment\nl 1 2\np 1\n");
+    file::write_whole_file(
+        place / "a.obj",
+        "\xef\xbb\xbfv 0 0 0\nv 1 0 \\\n0\r\nv 0 1 0\nv 0 0 1\nf 1 \\\r\n 2 \\\n3\nf 1 3 4 # a comment\nl 1 2\np 1\n");
     mesh::MeshOrigin origin;
     const mesh::Mesh mesh = mesh::load_mesh(place / "a.obj", 1.0, &origin);
     CHECK(mesh.triangles.size() == 2);
     CHECK(mesh.vertices.size() == 4);
-    CHECK_THAT(fmt::format("{}", fmt::join(origin.notes, ";")), ContainsSubstring("1 lines") && ContainsSubstring("1 points"));
+    CHECK_THAT(fmt::format("{}", fmt::join(origin.notes, ";")),
+               ContainsSubstring("1 lines") && ContainsSubstring("1 points"));
 }
 
 TEST_CASE("overlapping segments in layers become one bone each, from its own layer, and empty ones are noted") {
@@ -173,7 +193,8 @@ TEST_CASE("overlapping segments in layers become one bone each, from its own lay
     CHECK(made[0].bone.name == "Jaw/left: \xc3\xa4");
     CHECK(made[0].summary.bone_volume_mm3 == Approx(1728.0).epsilon(0.03));
     CHECK(made[1].summary.bone_volume_mm3 == Approx(216.0).epsilon(0.06));
-    CHECK_THAT(fmt::format("{}", fmt::join(made[0].summary.notes, ";")), ContainsSubstring("of 3 named segments 1 have no voxels: Nothing"));
+    CHECK_THAT(fmt::format("{}", fmt::join(made[0].summary.notes, ";")),
+               ContainsSubstring("of 3 named segments 1 have no voxels: Nothing"));
     options.label = "Inner";
     CHECK(bone::import_labels(options).size() == 1);
 }

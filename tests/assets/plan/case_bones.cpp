@@ -2,8 +2,8 @@
 #include "assets/plan/case_bones.hpp"
 
 #include "assets/bone/bone.hpp"
-#include "assets/plan/plan_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/plan/kept_bone.hpp"
 
-#include "assets/plan/case_bones.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/plan/case_bones.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/kept_cache.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/plan/plan_keeper.hpp"
 
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"

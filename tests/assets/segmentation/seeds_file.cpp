@@ -36,10 +36,11 @@ struct File {
 
 TEST_CASE("assets: seeds are read as they were written") {
     const File file("seeds.json");
-    const std::vector<segmentation::SeedLabel> labels{{"main \"part\"",
-                                                  Vec3(217.0, 95.0, 2.0) / 255.0,
-                                                  {{3e-3, {Vec3(0.012, -0.2, 1.5), Vec3(0.0)}}, {1e-3, {Vec3(1.0)}}}},
-                                                 {"fragment", {}, {{2.5e-3, {Vec3(-0.01, 0.0, 0.002)}}}}};
+    const std::vector<segmentation::SeedLabel> labels{
+        {"main \"part\"",
+         Vec3(217.0, 95.0, 2.0) / 255.0,
+         {{3e-3, {Vec3(0.012, -0.2, 1.5), Vec3(0.0)}}, {1e-3, {Vec3(1.0)}}}},
+        {"fragment", {}, {{2.5e-3, {Vec3(-0.01, 0.0, 0.002)}}}}};
     segmentation::write_seeds(labels, file.path);
     const auto read = segmentation::read_seeds(file.path);
     REQUIRE(read.size() == 2);

@@ -32,11 +32,13 @@ std::string chunk_of(const std::string& name, std::uint64_t size, const std::str
 }
 
 /// 16 bits, two channels, 8 kHz.
-const std::string wave_format = little(1, 2) + little(2, 2) + little(8000, 4) + little(32000, 4) + little(4, 2) + little(16, 2);
+const std::string wave_format =
+    little(1, 2) + little(2, 2) + little(8000, 4) + little(32000, 4) + little(4, 2) + little(16, 2);
 
 std::string samples_of_wave() {
     std::string out;
-    for (int n = 0; n < 500; ++n) out += little(static_cast<std::uint64_t>(n * 30), 2) + little(static_cast<std::uint64_t>(-n * 20), 2);
+    for (int n = 0; n < 500; ++n)
+        out += little(static_cast<std::uint64_t>(n * 30), 2) + little(static_cast<std::uint64_t>(-n * 20), 2);
     return out;
 }
 
@@ -70,9 +72,14 @@ TEST_CASE("whatever sizes the header of a wave states, all samples that the file
     const std::vector<double> right = frames_of(file.path);
     REQUIRE(right.size() == 1000);
     CHECK_FALSE(sound::repaired_wave_header(file.path));
-    for (const auto& [riff, data] : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
-             {whole + 8, samples.size()}, {0, 0}, {whole, 0}, {0xffffffff, 0xffffffff}, {0x7fffffff, 0x7fffffff},
-             {36, 0}, {whole + 24, samples.size() + 24}}) {
+    for (const auto& [riff, data] :
+         std::vector<std::pair<std::uint64_t, std::uint64_t>>{{whole + 8, samples.size()},
+                                                              {0, 0},
+                                                              {whole, 0},
+                                                              {0xffffffff, 0xffffffff},
+                                                              {0x7fffffff, 0x7fffffff},
+                                                              {36, 0},
+                                                              {whole + 24, samples.size() + 24}}) {
         CAPTURE(riff, data);
         file::write_whole_file(file.path, wave_bytes(riff, data, samples));
         std::string note;
@@ -106,10 +113,12 @@ TEST_CASE("samples before their format, an unfinished RF64 and an empty wave wit
     const std::vector<double> right = frames_of(file.path);
     std::string note;
     file::write_whole_file(file.path, "RIFF" + little(36 + samples.size(), 4) + "WAVE" +
-                                          chunk_of("data", samples.size(), samples) + chunk_of("fmt ", 16, wave_format));
+                                          chunk_of("data", samples.size(), samples) +
+                                          chunk_of("fmt ", 16, wave_format));
     CHECK(frames_of(file.path, &note) == right);
     CHECK_THAT(note, ContainsSubstring("before their format"));
-    file::write_whole_file(file.path, "RF64" + little(0xffffffff, 4) + "WAVE" + chunk_of("ds64", 28, std::string(28, '\0')) +
+    file::write_whole_file(file.path, "RF64" + little(0xffffffff, 4) + "WAVE" +
+                                          chunk_of("ds64", 28, std::string(28, '\0')) +
                                           chunk_of("fmt ", 16, wave_format) + chunk_of("data", 0xffffffff, samples));
     CHECK(frames_of(file.path, &note) == right);
     CHECK_THAT(note, ContainsSubstring("not finished"));

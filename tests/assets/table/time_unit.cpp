@@ -45,8 +45,8 @@ TEST_CASE("of generated logs without a unit of time none is read in a wrong one,
         const bool is_whole = unit.seconds < 0.1 && (unit.seconds < 1e-5 || uniform(random) < 0.5);
         const bool is_epoch = uniform(random) < 0.3 && (is_whole || rate < 1e3);
         const double start = is_epoch ? std::floor(1.7e9 / unit.seconds) : std::floor(1000.0 * uniform(random));
-        const std::string text = log_in(unit.seconds, rate, i % 3 == 0 ? "t" : "time", is_whole, start,
-                                        0.2 * uniform(random), random);
+        const std::string text =
+            log_in(unit.seconds, rate, i % 3 == 0 ? "t" : "time", is_whole, start, 0.2 * uniform(random), random);
         CAPTURE(i, unit.symbol, rate, is_whole, is_epoch);
         fast += rate > 200.0;
         try {
@@ -69,12 +69,14 @@ TEST_CASE("a named unit of time decides, however the name is written") {
     for (const char* name : {"TimeUS", "time_us", "timestamp [us]", "Time in microseconds", "micros", "t_us", "usec",
                              "timeus", "SampleUS", "elapsedMicros", "Zeit (µs)"})
         CHECK(named(name) == std::string("us"));
-    for (const char* name : {"TimeMS", "ms", "millis", "Unix time (milli seconds)", "epoch_ms", "Timestamp-ms", "timeMs"})
+    for (const char* name :
+         {"TimeMS", "ms", "millis", "Unix time (milli seconds)", "epoch_ms", "Timestamp-ms", "timeMs"})
         CHECK(named(name) == std::string("ms"));
     for (const char* name : {"ns", "timestamp_ns", "elapsedRealtimeNanos", "time (ns)", "sensorTimestampNs"})
         CHECK(named(name) == std::string("ns"));
     for (const char* name : {"seconds_elapsed", "Time [s]", "t_s", "secs"}) CHECK(named(name) == std::string("s"));
-    for (const char* name : {"time", "t", "times", "timestamp", "x", "status"}) CHECK(named(name) == std::string("none"));
+    for (const char* name : {"time", "t", "times", "timestamp", "x", "status"})
+        CHECK(named(name) == std::string("none"));
     CHECK(table::read_sample_log("TimeUS,AccX\n100,1\n725,2\n1350,3\n", "l.csv", {}).times[1] == Approx(725e-6));
 }
 
@@ -86,17 +88,19 @@ TEST_CASE("a step that is plausible in two units is refused with both, in none w
                                                               ContainsSubstring("s (50 Hz) or in ms (5e+04 Hz)") &&
                                                               ContainsSubstring("--time-unit s or --time-unit ms"));
     CHECK(read("t,a\n0,1\n0.02,2\n0.04,3\n", "ms").times[1] == Approx(2e-5));
-    CHECK_THROWS_WITH(read("t,a\n0,1\n1e9,2\n2e9,3\n"), ContainsSubstring("mean step of 1e+09") &&
-                                                            ContainsSubstring("--time-unit"));
+    CHECK_THROWS_WITH(read("t,a\n0,1\n1e9,2\n2e9,3\n"),
+                      ContainsSubstring("mean step of 1e+09") && ContainsSubstring("--time-unit"));
     const table::SampleLog log = read("time,ax (m/s^2)\n0.000,1\n0.625,2\n1.250,3\n1.875,4\n");
     CHECK(log.times[1] == Approx(625e-6));
-    CHECK_THAT(table::describe(log.form), ContainsSubstring("in ms (no unit is stated; only ms (1600 Hz) is plausible)"));
+    CHECK_THAT(table::describe(log.form),
+               ContainsSubstring("in ms (no unit is stated; only ms (1600 Hz) is plausible)"));
     CHECK(read("t,a\n0,1\n0,1\n0,1\n").times.size() == 3);
 }
 
 TEST_CASE("nanoseconds since 1970 keep their steps, and cells with a unit are read") {
     std::string text = "time,x\n";
-    for (int i = 0; i < 50; ++i) text += fmt::format("{},{}\n", std::int64_t{1'700'000'000'123'456'789} + i * 125'001, i);
+    for (int i = 0; i < 50; ++i)
+        text += fmt::format("{},{}\n", std::int64_t{1'700'000'000'123'456'789} + i * 125'001, i);
     const table::SampleLog log = table::read_sample_log(text, "l.csv", {});
     for (std::size_t i = 1; i < log.times.size(); ++i) CHECK(log.times[i] - log.times[i - 1] == Approx(125.001e-6));
     CHECK_THAT(log.form.time, ContainsSubstring("dates in ns"));

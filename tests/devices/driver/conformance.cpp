@@ -107,9 +107,8 @@ void check_buttons(const PeerKind& kind) {
     constexpr std::uint32_t order[] = {1u, 4u, 8u, 16u};
     for (int button = 0; button < peer->buttons; ++button) {
         peer->press(1u << button);
-        CHECK(tick_until(*device, {}, [&](const DeviceSample& sample) {
-            return sample.valid && sample.buttons == order[button];
-        }));
+        CHECK(tick_until(*device, {},
+                         [&](const DeviceSample& sample) { return sample.valid && sample.buttons == order[button]; }));
     }
     peer->press(0);
     if (peer->buttons > 0)
@@ -229,9 +228,7 @@ void check_without_line(void (*check)(const PeerKind&)) {
 
 }  // namespace
 
-TEST_CASE("units and axes of every driver are exact", "[virtual]") {
-    check_without_line(check_units);
-}
+TEST_CASE("units and axes of every driver are exact", "[virtual]") { check_without_line(check_units); }
 
 TEST_CASE("forces along each axis reach every device in its own frame", "[virtual]") {
     check_without_line(check_forces);
@@ -241,9 +238,7 @@ TEST_CASE("no driver gives more than its device's limit, or a force that is no n
     check_without_line(check_limits);
 }
 
-TEST_CASE("buttons of every driver are in the maker's order", "[virtual]") {
-    check_without_line(check_buttons);
-}
+TEST_CASE("buttons of every driver are in the maker's order", "[virtual]") { check_without_line(check_buttons); }
 
 TEST_CASE("a driver whose vendor hangs is invalid within 20 ms, delays no tick and is left alone at the end",
           "[virtual]") {
@@ -266,9 +261,7 @@ TEST_CASE("a burst leaves velocities as they are, and the newest pose is the one
     check_without_line(check_burst);
 }
 
-TEST_CASE("a device is read without enabling or giving a force", "[virtual]") {
-    check_without_line(check_reading);
-}
+TEST_CASE("a device is read without enabling or giving a force", "[virtual]") { check_without_line(check_reading); }
 
 TEST_CASE("a driver with a terminal or a socket does what every driver does", "[live]") {
     for (const PeerKind& kind : peer_kinds(true))

@@ -9,12 +9,9 @@
 namespace tactus::test {
 
 std::vector<PeerKind> peer_kinds(bool has_line) {
-    std::vector<PeerKind> kinds{{"force_dimension", make_dhd_peer},
-                                {"touch", make_hd_peer},
-                                {"haply", make_haply_peer, true},
-                                {"serial_board", make_frame_board_peer, true},
-                                {"haply_2diy", make_diy_peer, true},
-                                {"wheel", make_wheel_peer}};
+    std::vector<PeerKind> kinds{{"force_dimension", make_dhd_peer},  {"touch", make_hd_peer},
+                                {"haply", make_haply_peer, true},    {"serial_board", make_frame_board_peer, true},
+                                {"haply_2diy", make_diy_peer, true}, {"wheel", make_wheel_peer}};
     std::erase_if(kinds, [has_line](const PeerKind& kind) { return kind.has_line != has_line; });
     return kinds;
 }

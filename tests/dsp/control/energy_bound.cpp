@@ -53,7 +53,8 @@ struct Flight {
         const double h = period / steps;
         std::vector<double> under_way(static_cast<std::size_t>(std::lround(delay / h)) + 1, 0.0);
         std::size_t at = 0;
-        double x = -speed * period * (3.0 + phase) - 1e-4, v = speed, work = 0.0, most = 0.0, damped = 0.0;  // x > 0 is inside
+        double x = -speed * period * (3.0 + phase) - 1e-4, v = speed, work = 0.0, most = 0.0,
+               damped = 0.0;  // x > 0 is inside
         std::vector<double> seen(static_cast<std::size_t>(late) + 1, x);
         Wrench committed;
         bool touched = false;
@@ -72,7 +73,8 @@ struct Flight {
                 at = (at + 1) % under_way.size();
                 const double force = under_way[at], moved = v * h + 0.5 * force / mass * h * h;
                 work += force * moved;
-                if (std::abs(v) < 2.0 * control::EnergyCap::calm_m_s) damped += control::StatedHand::damping * v * v * h;
+                if (std::abs(v) < 2.0 * control::EnergyCap::calm_m_s)
+                    damped += control::StatedHand::damping * v * v * h;
                 x += moved;
                 v += force / mass * h;
             }

@@ -77,7 +77,8 @@ TEST_CASE("the simulated stiffness of a device holds for every press and approac
         wall.resolution = model.resolution;
         wall.max_force = model.max_force;
         const control::SimulatedLimit limit = control::simulated_stiffness(wall, 500e3);
-        INFO(model.name << ": " << limit.stiffness << " N/m at " << limit.press << " N and " << limit.approach << " m/s");
+        INFO(model.name << ": " << limit.stiffness << " N/m at " << limit.press << " N and " << limit.approach
+                        << " m/s");
         wall.stiffness = limit.stiffness;
         wall.press = limit.press;
         wall.approach = limit.approach;

@@ -43,7 +43,8 @@ Led lead(double stiffness, bool is_granted, double period = 1e-3, double damper 
         grants = shared.tick(hands, 0.5 * force * force / stiffness, period);
         for (std::size_t i = 0; i < 2; ++i) {
             const Wrench before = held[i];
-            held[i] = caps[i].tick(hands[i].wrench, held[i], hands[i].pose, period, is_granted ? grants[i] : 0.0, false);
+            held[i] =
+                caps[i].tick(hands[i].wrench, held[i], hands[i].pose, period, is_granted ? grants[i] : 0.0, false);
             if (i == 1) led.largest_step = std::max(led.largest_step, std::abs(held[i].force.x - before.force.x));
         }
         const double on_led = held[1].force.x, x0 = x[1];
@@ -92,8 +93,9 @@ TEST_CASE("a force that neither hand has put in is granted to none") {
     double most = 0.0;
     for (int n = 0; n < 2000; ++n) {
         const double x = 1e-4 * n;
-        const auto grants = shared.tick({{{{{x, 0, 0}, {1, 0, 0, 0}}, {{5, 0, 0}, {}}}, {{{-x, 0, 0}, {1, 0, 0, 0}}, {{-5, 0, 0}, {}}}}},
-                                        1.0, 1e-3);
+        const auto grants = shared.tick(
+            {{{{{x, 0, 0}, {1, 0, 0, 0}}, {{5, 0, 0}, {}}}, {{{-x, 0, 0}, {1, 0, 0, 0}}, {{-5, 0, 0}, {}}}}}, 1.0,
+            1e-3);
         most = std::max({most, grants[0], grants[1]});
     }
     CHECK(most == 0.0);

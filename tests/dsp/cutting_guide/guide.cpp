@@ -137,8 +137,8 @@ TEST_CASE("the thinnest wall of a wedge is that of its thin end") {
 
 TEST_CASE("a smooth shaft does not hold a guide along itself and a ball does not hold it against turning") {
     // Half a tube round a shaft, and a cap on a ball, both 0.3 mm off.
-    const geometry::TriangleSurface shaft = reconstruction::closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 60.0 * mm, 90, 61,
-                                                                     [](double, double) { return 7.0 * mm; });
+    const geometry::TriangleSurface shaft = reconstruction::closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 60.0 * mm, 90,
+                                                                        61, [](double, double) { return 7.0 * mm; });
     const auto half_of = [](geometry::TriangleSurface s, const auto& keeps) {
         std::erase_if(s.triangles, [&](const auto& t) { return !keeps(s.vertices[static_cast<std::size_t>(t[0])]); });
         for (auto& t : s.triangles) std::swap(t[1], t[2]);
@@ -146,7 +146,7 @@ TEST_CASE("a smooth shaft does not hold a guide along itself and a ball does not
     };
     const geometry::TriangleSurface sleeve =
         half_of(reconstruction::closed_tube(Vec3(0.0, 0.0, 20.0 * mm), Vec3(0.0, 0.0, 1.0), 20.0 * mm, 90, 41,
-                                         [](double, double) { return 7.3 * mm; }),
+                                            [](double, double) { return 7.3 * mm; }),
                 [](const Vec3& v) { return v.x > 1.0 * mm && glm::length(Vec3(v.x, v.y, 0.0)) > 7.0 * mm; });
     const geometry::TriangleTree bone(shaft);
     const Seat seat = seat_of(sleeve, bone, Vec3(1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, run_in_turn);

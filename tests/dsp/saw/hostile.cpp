@@ -20,9 +20,12 @@ bool is_sane(const Wrench& wrench) { return is_finite(wrench.force) && is_finite
 /// Poses that are none, or far from all bone.
 const std::vector<Pose>& hostile_poses() {
     static const std::vector<Pose> all{
-        {Vec3(nan_value, 0.0, 0.0), teeth_down},     {Vec3(0.0, infinite, 0.0), teeth_down},
-        {Vec3(0.0, 0.0, -1e300), teeth_down},        {Vec3(0.0), Quat(0.0, 0.0, 0.0, 0.0)},
-        {Vec3(0.0), Quat(nan_value, 0.0, 0.0, 1.0)}, {Vec3(0.0), Quat(1e200, 0.0, 0.0, 0.0)},
+        {Vec3(nan_value, 0.0, 0.0), teeth_down},
+        {Vec3(0.0, infinite, 0.0), teeth_down},
+        {Vec3(0.0, 0.0, -1e300), teeth_down},
+        {Vec3(0.0), Quat(0.0, 0.0, 0.0, 0.0)},
+        {Vec3(0.0), Quat(nan_value, 0.0, 0.0, 1.0)},
+        {Vec3(0.0), Quat(1e200, 0.0, 0.0, 0.0)},
         {Vec3(0.0, 0.0, -0.004), Quat(2.0, 0.0, 0.0, 0.0)},
     };
     return all;

@@ -19,7 +19,8 @@ struct Phantom {
     std::vector<std::uint8_t> inside, truth;  // per voxel
 
     segmentation::VoxelGraph graph() const {
-        return segmentation::make_voxel_graph(grid, inside, segmentation::gap_law(segmentation::gap_statistics(grid, inside)));
+        return segmentation::make_voxel_graph(grid, inside,
+                                              segmentation::gap_law(segmentation::gap_statistics(grid, inside)));
     }
 };
 

@@ -123,8 +123,8 @@ TEST_CASE("dsp: a solve takes as many iterations whatever the size") {
         const Phantom p = noisy_cube(edge);
         const VoxelGraph graph = p.graph();
         const int last = edge - 2;
-        const Walks walks =
-            segmentation::random_walks(graph, seeds_at(graph, {{{1, 1, 1}, 1}, {{last, last, last}, 2}}), 2, {1e-4, 200});
+        const Walks walks = segmentation::random_walks(
+            graph, seeds_at(graph, {{{1, 1, 1}, 1}, {{last, last, last}, 2}}), 2, {1e-4, 200});
         INFO(edge);
         CHECK(walks.iterations <= 20);
         CHECK(walks.residual < 2e-4);

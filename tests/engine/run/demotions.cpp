@@ -35,8 +35,8 @@ struct SimulatedCore {
     std::int64_t now = begin, used_ns = 0, throttled_ns = 0;
 
     int priority(const SimulatedGroup& group) const {
-        const int rank = run::priority_of(
-            group.criticality, static_cast<Flicks>(static_cast<double>(flicks_per_second) / group.rate_hz));
+        const int rank = run::priority_of(group.criticality,
+                                          static_cast<Flicks>(static_cast<double>(flicks_per_second) / group.rate_hz));
         return group.is_demoted ? 0 : rank;
     }
 
@@ -59,7 +59,8 @@ struct SimulatedCore {
 
     void release() {
         for (SimulatedGroup& group : groups) {
-            const auto due = begin + static_cast<std::int64_t>(static_cast<double>(group.released) * 1e9 / group.rate_hz);
+            const auto due =
+                begin + static_cast<std::int64_t>(static_cast<double>(group.released) * 1e9 / group.rate_hz);
             // Late calls are left out, as in a group without backlog.
             if (now < due || group.left_ns > 0) continue;
             ++group.released;
@@ -160,7 +161,8 @@ TEST_CASE("the least critical group is demoted by load, not one that uses next t
     run::Demotions demotions;
     std::vector<run::GroupLoad> loads{{70, 0, 0}, {60, 0, 0}, {50, 0, 0}, {40, 0, 0}};
     demotions.look(1'000'000'000, loads);
-    for (const auto& [group, share] : std::vector<std::pair<std::size_t, double>>{{0, 0.1}, {1, 0.5}, {2, 0.4}, {3, 0.001}})
+    for (const auto& [group, share] :
+         std::vector<std::pair<std::size_t, double>>{{0, 0.1}, {1, 0.5}, {2, 0.4}, {3, 0.001}})
         loads[group].spent = static_cast<std::int64_t>(share * 1e8);
     const auto causes = demotions.look(1'100'000'000, loads);
     using run::DemotionCause;

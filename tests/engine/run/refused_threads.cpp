@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A system that refuses threads: the run or the edit says so.
+#include "tests/support/refused_threads.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/live_case.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/refused_threads.hpp"
 #include "tests/support/virtual_clock.hpp"
 
 #include <optional>

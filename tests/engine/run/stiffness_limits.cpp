@@ -119,5 +119,7 @@ TEST_CASE("the nodes of a plan can be asked for their units and slopes once it r
     run::Engine engine(compile_text(patch.toml()), options);
     engine.render(1);
     CHECK(analyse::unstated_laws(engine.plan()).empty());
-    CHECK(analyse::force_loops(engine.plan(), [](const std::string&) { return DeviceInfo{.name = {}, .damping = 1.0}; }).empty());
+    CHECK(analyse::force_loops(engine.plan(), [](const std::string&) {
+              return DeviceInfo{.name = {}, .damping = 1.0};
+          }).empty());
 }

@@ -189,17 +189,20 @@ TEST_CASE("a log that was cut off anywhere is read up to its last whole record, 
     std::int64_t before = 0;
     for (std::size_t length = 24; length < bytes.size(); length += 7) {
         std::filesystem::resize_file(scratch_log(), length);
-        std::ofstream(scratch_log(), std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(length));
+        std::ofstream(scratch_log(), std::ios::binary | std::ios::trunc)
+            .write(bytes.data(), static_cast<std::streamsize>(length));
         const take::TimingLog log = take::TimingLog::load(scratch_log(), true);
         CHECK_FALSE(log.is_whole);
         CHECK(log.records >= before);
         before = log.records;
-        CHECK_THROWS_WITH(take::TimingLog::load(scratch_log()), Catch::Matchers::ContainsSubstring("stops before the end"));
+        CHECK_THROWS_WITH(take::TimingLog::load(scratch_log()),
+                          Catch::Matchers::ContainsSubstring("stops before the end"));
     }
     CHECK(before > 150);
     std::string damaged = bytes;
     damaged[24 + 8] = '\x0f';  // a kind that there is none of
-    std::ofstream(scratch_log(), std::ios::binary | std::ios::trunc).write(damaged.data(), static_cast<std::streamsize>(damaged.size()));
+    std::ofstream(scratch_log(), std::ios::binary | std::ios::trunc)
+        .write(damaged.data(), static_cast<std::streamsize>(damaged.size()));
     CHECK_THROWS_WITH(take::TimingLog::load(scratch_log(), true), Catch::Matchers::ContainsSubstring("damaged"));
     std::filesystem::remove(scratch_log());
 }

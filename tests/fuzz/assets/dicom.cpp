@@ -24,7 +24,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             return values.data();
         });
         const tactus::volume::DicomImage& first = images.front();
-        if (values.size() != images.size() * static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns))
+        if (values.size() !=
+            images.size() * static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns))
             std::abort();
     } catch (const tactus::Error&) {
         // Refusing is right for most bytes.

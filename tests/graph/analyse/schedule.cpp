@@ -48,12 +48,12 @@ int simulated_response(const std::vector<analyse::ScheduledGroup>& groups, std::
 
 TEST_CASE("groups are ordered by criticality, then by their rate of calls, then by name") {
     const compile::Schedule plan = plan_of({{Criticality::other, 1},
-                                        {Criticality::sound, 2},
-                                        {Criticality::force_value, 4},
-                                        {Criticality::force_output, 8},
-                                        {Criticality::force_value, 2},
-                                        {Criticality::force_value, 2},
-                                        {Criticality::world_value, 1}});
+                                            {Criticality::sound, 2},
+                                            {Criticality::force_value, 4},
+                                            {Criticality::force_output, 8},
+                                            {Criticality::force_value, 2},
+                                            {Criticality::force_value, 2},
+                                            {Criticality::world_value, 1}});
     std::string order;
     for (const analyse::ScheduledGroup& group : analyse::schedule_of(plan, {})) order += group.group;
     CHECK(order == "4563271");

@@ -12,7 +12,8 @@ std::vector<analyse::ForceLoop> loops_of(const std::string& text, double damping
     const Compiled c = compiled(text);
     INFO(c.said);
     REQUIRE(c.plan);
-    return analyse::force_loops(*c.plan, [damping](const std::string&) { return DeviceInfo{.name = {}, .damping = damping}; });
+    return analyse::force_loops(*c.plan,
+                                [damping](const std::string&) { return DeviceInfo{.name = {}, .damping = damping}; });
 }
 
 const std::string hand = a_node("in", "device_input") + a_node("out", "device_output");
@@ -117,9 +118,11 @@ TEST_CASE("a stiffness beyond what the device states is too stiff, whatever its 
     REQUIRE(c.plan);
     for (const double damping : {0.0, 100.0}) {
         const auto verdict = [&](double stated) {
-            return analyse::force_loops(*c.plan, [&](const std::string&) {
-                       return DeviceInfo{.name = {}, .damping = damping, .max_stiffness = stated};
-                   })[0].verdict();
+            return analyse::force_loops(*c.plan,
+                                        [&](const std::string&) {
+                                            return DeviceInfo{.name = {}, .damping = damping, .max_stiffness = stated};
+                                        })[0]
+                .verdict();
         };
         CHECK(verdict(3800.0) == analyse::Verdict::too_stiff);
         CHECK(verdict(3900.0) != analyse::Verdict::too_stiff);

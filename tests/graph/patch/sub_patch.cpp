@@ -104,7 +104,8 @@ TEST_CASE("a parameter with several targets reaches all of them from any depth")
         const std::string below = depth == 1 ? "pair.toml" : fmt::format("p{}.toml", depth - 1);
         parts += part(fmt::format("p{}.toml", depth),
                       "[inputs]\nin = \"n.in\"\n[outputs]\nout = \"n.out\"\n[parameters]\nboth = \"n.both\"\n"
-                      "[nodes.n]\ntype = \"patch:" + below + "\"\nrate = \"outer\"\n");
+                      "[nodes.n]\ntype = \"patch:" +
+                          below + "\"\nrate = \"outer\"\n");
         const Compiled c = compiled(
             "wires = [ \"s.value -> top.in\", \"top.out -> end.in\" ]\n" + a_node("s", "source") +
             fmt::format("[nodes.top]\ntype = \"patch:p{}.toml\"\nrate = \"1 kHz\"\nboth = \"9 N/m\"\n", depth) +

@@ -44,8 +44,8 @@ TEST_CASE("contact of a saw and a burr ends when they are out of the bone") {
 
 TEST_CASE("a tool cuts by the share of its force that the device was given") {
     for (const char* type : {"saw_blade", "burr"})
-        for (const auto& [given, share] :
-             {std::pair{4.0, 1.0}, std::pair{3.0, 0.75}, std::pair{0.0, 0.0}, std::pair{-1.0, 0.0}, std::pair{9.0, 1.0}}) {
+        for (const auto& [given, share] : {std::pair{4.0, 1.0}, std::pair{3.0, 0.75}, std::pair{0.0, 0.0},
+                                           std::pair{-1.0, 0.0}, std::pair{9.0, 1.0}}) {
             const auto bone = bone_block({.voxel = 0.5e-3});
             NodeHarness node(type, servo);
             node.disconnect_optional();

@@ -162,9 +162,8 @@ TEST_CASE("direct rendering of a saturated contact keeps the force of its onset"
             const auto depth = [speed](std::int64_t k) {
                 return std::min(1e-3 * speed * static_cast<double>(k), 0.8) - 0.1;
             };
-            contact.feed<Pose>("pose", [&](std::int64_t k) {
-                return Pose{{0.0, 0.0, (5.0 - depth(k)) * mm}, {1, 0, 0, 0}};
-            });
+            contact.feed<Pose>("pose",
+                               [&](std::int64_t k) { return Pose{{0.0, 0.0, (5.0 - depth(k)) * mm}, {1, 0, 0, 0}}; });
             contact.prepare();
             contact.run(900);
             const auto forces = contact.values<Wrench>("wrench");

@@ -84,7 +84,8 @@ TEST_CASE("a sample that freezes the pose at device_input is a fault at device_o
 }
 
 TEST_CASE("a value that is overdue fades the force within 10 ms, and it comes back as after a late tick") {
-    for (const control::Fault fault : {control::Fault::late_value, control::Fault::old_world, control::Fault::unusable_value}) {
+    for (const control::Fault fault :
+         {control::Fault::late_value, control::Fault::old_world, control::Fault::unusable_value}) {
         NodeHarness node("device_output", test::servo);
         node.device_feed = [&](std::int64_t k, DevicePort& port) {
             port.sample = sample_at(0.0, k);

@@ -77,8 +77,7 @@ TEST_CASE("a fragment whose partner has moved away no longer stands") {
     fitted.fit = plan::PlanFit{"left", "fit", 0.8, 0.5, 1e-4, 0.0, 0.0, 1e-4};
     plan::add_step(plan->plan, fitted);
     CHECK(shown(plan).objects[1].stands);
-    plan::add_step(plan->plan,
-                    plan::placing(plan->plan, 0, {Vec3(0.0, 0.0, 1.0) * mm, {1.0, 0.0, 0.0, 0.0}}, "hand"));
+    plan::add_step(plan->plan, plan::placing(plan->plan, 0, {Vec3(0.0, 0.0, 1.0) * mm, {1.0, 0.0, 0.0, 0.0}}, "hand"));
     CHECK_FALSE(shown(plan).objects[1].stands);
     plan->plan.place() = fit::undone(plan->plan.before(), plan->plan.place());
     CHECK(shown(plan).objects[1].stands);

@@ -6,8 +6,8 @@
 #include "tests/support/counted_looks.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/render/section_grey.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
+#include "tools/render/section_grey.hpp"
 #include "tools/window/plan/plan_comparison.hpp"
 #include "tools/window/slices/plan_scan.hpp"
 

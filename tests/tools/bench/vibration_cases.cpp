@@ -2,9 +2,9 @@
 // A fixed part of `tactus-bench fundamental` and `verdicts`.
 #include "dsp/signal/spectrum/fundamental.hpp"
 #include "tests/support/catch.hpp"
+#include "tools/analysis/vibration/verdict.hpp"
 #include "tools/bench/vibration/machine_cases.hpp"
 #include "tools/bench/vibration/verdict_cases.hpp"
-#include "tools/analysis/vibration/verdict.hpp"
 
 #include <span>
 
@@ -35,6 +35,7 @@ TEST_CASE("random phases and bursts with the spectrum of a vibration are not the
                 0.0, {});
             CAPTURE(seed, static_cast<int>(kind), verdict.words());
             CHECK(verdict.passed() == (kind == bench::PairKind::copy));
-            if (kind == bench::PairKind::copy) CHECK(verdict.words() == "Same mean spectrum and course over time, 40 to 1000 Hz");
+            if (kind == bench::PairKind::copy)
+                CHECK(verdict.words() == "Same mean spectrum and course over time, 40 to 1000 Hz");
         }
 }

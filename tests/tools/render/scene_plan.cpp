@@ -31,9 +31,13 @@ TEST_CASE("the vessels of a plan's scan are in the picture where they were scann
     plan::CasePlan plan;
     plan::PlanStep step;
     step.kind = plan::StepKind::vessels;
-    step.vessels = std::make_shared<const std::vector<reconstruction::FlapVessel>>(std::vector<reconstruction::FlapVessel>{
-        {"carotid", reconstruction::VesselKind::artery, 2e-3, {Vec3(0.0), Vec3(0.02, 0.0, 0.0), Vec3(0.1, 0.0, 0.0)}},
-        {"jugular", reconstruction::VesselKind::vein, 4e-3, {Vec3(0.0, 0.01, 0.0), Vec3(0.1, 0.01, 0.0)}}});
+    step.vessels =
+        std::make_shared<const std::vector<reconstruction::FlapVessel>>(std::vector<reconstruction::FlapVessel>{
+            {"carotid",
+             reconstruction::VesselKind::artery,
+             2e-3,
+             {Vec3(0.0), Vec3(0.02, 0.0, 0.0), Vec3(0.1, 0.0, 0.0)}},
+            {"jugular", reconstruction::VesselKind::vein, 4e-3, {Vec3(0.0, 0.01, 0.0), Vec3(0.1, 0.01, 0.0)}}});
     plan::add_step(plan, step);
     plan::save_case_plan(plan, file);
     observe::Observer observer;

@@ -8,8 +8,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/box_stl.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/render/body_surface.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/render/body_surface.hpp"
 
 #include <glm/geometric.hpp>
 

@@ -109,8 +109,7 @@ TEST_CASE("only sockets of processes that are gone are removed") {
             CHECK(fs::exists(fs::symlink_status(runtime.sockets / kept)));
         }
         CHECK(slurp(runtime.sockets / "notes.txt") == "text");
-        CHECK(run::ControlFolder(run::ControlFolder::Missing::leave).listening() ==
-              std::vector<int>{::getpid()});
+        CHECK(run::ControlFolder(run::ControlFolder::Missing::leave).listening() == std::vector<int>{::getpid()});
     }
     CHECK_FALSE(fs::exists(runtime.sockets / own));
 }

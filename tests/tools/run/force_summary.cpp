@@ -33,6 +33,6 @@ TEST_CASE("after a fade the summary says since when forces were off and not a th
     report.set("force", "faults", 1.0);
     report.set("force", "fault", std::string("a tick came too late"));
     CHECK_THAT(run::force_text(report), Contains("off for 5.8 s") &&
-                                                Contains("from 2.041 s to 7.999 s (a tick came too late)") &&
-                                                Contains("7.10 N mean") && !Contains("104.8"));
+                                            Contains("from 2.041 s to 7.999 s (a tick came too late)") &&
+                                            Contains("7.10 N mean") && !Contains("104.8"));
 }

@@ -24,7 +24,7 @@ std::vector<double> intact_on_main(IntactBone& intact, const FractureSurfaceSett
     plan::ResultKey key("unbroken bone on a fragment", algorithm);
     key.add_file(settings.intact).add_file(main).add("mirror", settings.mirror ? 1.0 : 0.0);
     return plan::result_of(key, intact_numbers, note,
-                            [&] { return intact.numbers_on(points_of_fragment(main, note)); });
+                           [&] { return intact.numbers_on(points_of_fragment(main, note)); });
 }
 
 /// The registrations and the numbers of the broken points.

@@ -19,12 +19,11 @@ constexpr int sampling = 1;
 }  // namespace
 
 std::vector<contact::SurfacePoint> laid_target(const plan::MirrorTarget& target, const std::filesystem::path& folder) {
-    return fit::mirrored(points_of_file(plan::file_of(target.file, folder)),
-                         {target.plane_normal, target.plane_offset}, target.pose);
+    return fit::mirrored(points_of_file(plan::file_of(target.file, folder)), {target.plane_normal, target.plane_offset},
+                         target.pose);
 }
 
-std::optional<fit::RegistrationTarget> healthy_side(const plan::PlanState& state,
-                                                    const std::filesystem::path& folder) {
+std::optional<fit::RegistrationTarget> healthy_side(const plan::PlanState& state, const std::filesystem::path& folder) {
     if (!state.mirror) return std::nullopt;
     return std::optional<fit::RegistrationTarget>(std::in_place, laid_target(*state.mirror, folder));
 }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/experiment/run_experiment.hpp"
 
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
-#include "tools/run/load_plan.hpp"
-#include "tools/run/rendered_run.hpp"
-#include "tools/run/scratch_folder.hpp"
 #include "tools/analysis/experiment/experiment_folder.hpp"
 #include "tools/analysis/experiment/port_values.hpp"
 #include "tools/analysis/experiment/simulated_subject.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/rendered_run.hpp"
+#include "tools/run/scratch_folder.hpp"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include "assets/experiment/protocol.hpp"
 #include "assets/experiment/records.hpp"
 #include "graph/compile/load_assets.hpp"
-#include "tools/run/run_choice.hpp"
 #include "tools/analysis/experiment/subject_session.hpp"
+#include "tools/run/run_choice.hpp"
 
 #include <atomic>
 #include <cstddef>

@@ -5,8 +5,8 @@
 
 #include "dsp/control/fidelity.hpp"
 #include "graph/compile/load_assets.hpp"
-#include "tools/run/patch_choice.hpp"
 #include "tools/analysis/rig_matrix.hpp"
+#include "tools/run/patch_choice.hpp"
 
 #include <optional>
 #include <string>

@@ -2,8 +2,8 @@
 #include "tools/analysis/gripper/rig_study.hpp"
 
 #include "dsp/simulate/gripper/rig.hpp"
-#include "tools/run/load_plan.hpp"
 #include "tools/analysis/gripper/rig_findings.hpp"
+#include "tools/run/load_plan.hpp"
 
 #include <fmt/format.h>
 

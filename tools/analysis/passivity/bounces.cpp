@@ -8,8 +8,8 @@
 #include "graph/compile/load_assets.hpp"
 #include "graph/patch/patch.hpp"
 #include "nodes/catalogue.hpp"
-#include "tools/run/load_plan.hpp"
 #include "tools/analysis/passivity/thrown_device.hpp"
+#include "tools/run/load_plan.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -88,8 +88,8 @@ private:
     void of_reconstruction() {
         const FlapStudy study(plan_, state_, folder_);
         for (const reconstruction::FibulaWarning& w : study.fibula().warnings)
-            add(reconstruction::name_of(w.code), w.text, w.segment < 0 ? "" : fmt::format("segment-{}", w.segment + 1), "",
-                false);
+            add(reconstruction::name_of(w.code), w.text, w.segment < 0 ? "" : fmt::format("segment-{}", w.segment + 1),
+                "", false);
         for (const int piece : state_.pieces)
             if (!is_segment(name(piece)))
                 of_place(piece, {}, 0.5 * (study.inputs().planes.front().origin + study.inputs().planes.back().origin));
@@ -167,7 +167,8 @@ private:
             for (const double part : {pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z})
                 key.add("turn", part);
         }
-        if (state_.reconstruction) key.add_text("reconstruction", reconstruction::json_of(*state_.reconstruction).dump());
+        if (state_.reconstruction)
+            key.add_text("reconstruction", reconstruction::json_of(*state_.reconstruction).dump());
         if (state_.vessels)
             for (const reconstruction::FlapVessel& v : *state_.vessels) {
                 key.add("radius", v.radius);
@@ -183,7 +184,7 @@ private:
         const std::size_t before = made_.all.size();
         measure();
         plan::keep_text(key,
-                         json_of({made_.all.begin() + static_cast<std::ptrdiff_t>(before), made_.all.end()}).dump());
+                        json_of({made_.all.begin() + static_cast<std::ptrdiff_t>(before), made_.all.end()}).dump());
     }
 
     void add_kept(const std::string& text) {
@@ -230,17 +231,18 @@ CaseWarnings known_warnings(const plan::CasePlan& plan, const fs::path& folder) 
     return Warnings(plan, folder).list(false);
 }
 
-std::vector<CaseWarning> warnings_of(const reconstruction::FibulaPlan& fibula, const reconstruction::FlapMeasures& measures) {
+std::vector<CaseWarning> warnings_of(const reconstruction::FibulaPlan& fibula,
+                                     const reconstruction::FlapMeasures& measures) {
     std::vector<CaseWarning> all;
     for (const reconstruction::FibulaWarning& w : fibula.warnings)
         all.push_back({reconstruction::name_of(w.code), w.text,
                        w.segment < 0 ? "" : fmt::format("segment-{}", w.segment + 1), "", false});
     for (const reconstruction::FlapWarning& w : measures.warnings) {
-        const bool is_known =
-            w.code == reconstruction::FlapTrouble::near_hardware &&
-            std::ranges::any_of(all, [&](const CaseWarning& known) {
-                return known.code == reconstruction::name_of(w.code) && known.object == w.other && known.other == w.object;
-            });
+        const bool is_known = w.code == reconstruction::FlapTrouble::near_hardware &&
+                              std::ranges::any_of(all, [&](const CaseWarning& known) {
+                                  return known.code == reconstruction::name_of(w.code) && known.object == w.other &&
+                                         known.other == w.object;
+                              });
         if (!is_known) all.push_back({reconstruction::name_of(w.code), w.text, w.object, w.other, false});
     }
     return all;

@@ -3,8 +3,8 @@
 // that they cannot contradict each other.
 #pragma once
 
-#include "assets/plan/case_plan.hpp"
 #include "assets/file/json.hpp"
+#include "assets/plan/case_plan.hpp"
 #include "dsp/reconstruction/fibula_plan.hpp"
 #include "dsp/reconstruction/reach.hpp"
 
@@ -49,7 +49,8 @@ CaseWarnings known_warnings(const plan::CasePlan& plan, const std::filesystem::p
 
 /// Returns the warnings of the cuts and of a flap only, as for a candidate that is not a plan yet. Two objects that are
 /// too close to each other give one warning.
-std::vector<CaseWarning> warnings_of(const reconstruction::FibulaPlan& fibula, const reconstruction::FlapMeasures& measures);
+std::vector<CaseWarning> warnings_of(const reconstruction::FibulaPlan& fibula,
+                                     const reconstruction::FlapMeasures& measures);
 
 /// Returns a list of {code, text, object, other, fault}.
 file::Json json_of(const std::vector<CaseWarning>& warnings);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/plan/flap_candidate.hpp"
 
-#include "assets/plan/plan_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 

@@ -3,8 +3,8 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/bone/mesh_part.hpp"
-#include "assets/plan/mesh_unit.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/plan/mesh_unit.hpp"
 #include "assets/reconstruction/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruction/flap_obstacle.hpp"

@@ -31,9 +31,9 @@ std::string reach_words(const reconstruction::SiteReach& r) {
 }
 
 std::string candidate_words(const reconstruction::Candidate& c) {
-    std::string text =
-        fmt::format("{} leg{}, pedicle at the {} plane of the jaw", c.leg == reconstruction::Leg::left ? "left" : "right",
-                    c.is_mirrored ? " (the given one, mirrored)" : "", c.at_first ? "first" : "last");
+    std::string text = fmt::format("{} leg{}, pedicle at the {} plane of the jaw",
+                                   c.leg == reconstruction::Leg::left ? "left" : "right",
+                                   c.is_mirrored ? " (the given one, mirrored)" : "", c.at_first ? "first" : "last");
     if (c.is_flipped) text += ", turned by 180°";
     if (c.changes == 0) text += " (as given)";
     return text;

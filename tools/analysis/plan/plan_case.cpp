@@ -9,8 +9,7 @@
 
 namespace tactus::analysis {
 
-CaseFragment load_fragment(const plan::PlanFragment& fragment, const std::filesystem::path& folder,
-                           plan::Paint paint) {
+CaseFragment load_fragment(const plan::PlanFragment& fragment, const std::filesystem::path& folder, plan::Paint paint) {
     CaseFragment loaded{plan::fragment_bone(fragment, folder, paint, on_threads(), plan::Contents::surface), {}};
     loaded.bone.density = {};
     loaded.map = contact::make_voxmap(std::exchange(loaded.bone.distance, {}), on_threads());

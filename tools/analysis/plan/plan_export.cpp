@@ -6,12 +6,12 @@
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/transform/transform_file.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/run/load_plan.hpp"
 #include "tools/analysis/bone/surface_file.hpp"
 #include "tools/analysis/plan/flap_export.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
 #include "tools/analysis/plan/vessel_export.hpp"
+#include "tools/run/load_plan.hpp"
 
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>

@@ -2,9 +2,9 @@
 #include "tools/analysis/plan/plan_reconstruct.hpp"
 
 #include "assets/bone/labels.hpp"
+#include "assets/mesh/write_mesh.hpp"
 #include "assets/plan/plan_file.hpp"
 #include "assets/plan/plan_lock.hpp"
-#include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruction/bodies.hpp"
 #include "dsp/reconstruction/cut.hpp"
@@ -240,7 +240,7 @@ MadeReconstruction make_reconstruction(const reconstruction::ReconstructionInput
         mesh::write_mesh(std::vector<mesh::ColouredSurface>{{piece.surface, {}}}, file);
         whole.fragments.push_back(static_cast<int>(plan.fragments.size()));
         plan::add_fragment(plan, piece.name + tail, file, folder,
-                            bone::label_colour(static_cast<int>(whole.fragments.size())));
+                           bone::label_colour(static_cast<int>(whole.fragments.size())));
         load_fragment(plan.fragments.back(), folder);
     }
     const auto add = [&plan](plan::PlanStep step) {

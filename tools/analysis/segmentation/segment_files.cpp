@@ -80,7 +80,7 @@ void write_plan_of(const std::filesystem::path& bones, const SegmentedScan& foun
     for (std::size_t l = 0; l < found.labels.size(); ++l) {
         const SegmentedLabel& label = found.labels[l];
         plan::add_fragment(made, label.name, bones.string() + "#" + bone_name_of(found, l), plan.parent_path(),
-                            label.colour);
+                           label.colour);
         load_fragment(made.fragments.back(), plan.parent_path());
     }
     if (!vessels.empty()) {

@@ -67,8 +67,8 @@ std::vector<std::uint8_t> seeds_in(const ScanGraph& scan, std::span<const segmen
     std::vector<std::uint8_t> seed(scan.graph.nodes(), 0);
     for (std::size_t l = 0; l < labels.size(); ++l)
         for (std::size_t s = 0; s < labels[l].strokes.size(); ++s)
-            if (segmentation::paint(scan.box, scan.node_of_voxel, labels[l].strokes[s], static_cast<std::uint8_t>(l + 1),
-                               seed) == 0)
+            if (segmentation::paint(scan.box, scan.node_of_voxel, labels[l].strokes[s],
+                                    static_cast<std::uint8_t>(l + 1), seed) == 0)
                 throw Error(fmt::format(
                     "{}: label '{}', stroke {}: it touches no voxel of bone (values from {:g} on); {}", file,
                     labels[l].name, s + 1, scan.threshold, way_out_of_air(scan, labels[l].strokes[s])));
@@ -133,7 +133,7 @@ std::vector<UnseededIsland> islands_of(const ScanGraph& scan, std::span<const st
 }
 
 std::unique_ptr<segmentation::VoxelGraph> graph_for_seeds(const ScanGraph& scan, std::span<const std::uint8_t> seed,
-                                                     segmentation::GapLaw& law) {
+                                                          segmentation::GapLaw& law) {
     law = segmentation::law_of_seeds(scan.law, scan.graph, scan.box, seed);
     if (!(law.bright < scan.law.bright)) return nullptr;
     std::vector<std::uint8_t> inside(scan.node_of_voxel.size());
@@ -147,8 +147,8 @@ SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segmentation::
     const double begin = process_seconds();
     SegmentedScan out;
     const std::unique_ptr<segmentation::VoxelGraph> own = graph_for_seeds(scan, seed, out.law);
-    const segmentation::Walks walks =
-        segmentation::random_walks(own ? *own : scan.graph, seed, static_cast<int>(seeds.size()), {}, nullptr, settings.run);
+    const segmentation::Walks walks = segmentation::random_walks(
+        own ? *own : scan.graph, seed, static_cast<int>(seeds.size()), {}, nullptr, settings.run);
     out.seconds = process_seconds() - begin;
     out.residual = walks.residual;
     out.iterations = walks.iterations;

@@ -52,9 +52,9 @@ std::vector<segmentation::SeedLabel> proposed_seeds(const ScanGraph& scan);
 
 struct SegmentedLabel {
     std::string name;
-    Vec3 colour{0.0};        ///< sRGB, 0 to 1
+    Vec3 colour{0.0};  ///< sRGB, 0 to 1
     std::size_t voxels = 0;
-    double volume = 0.0;     ///< m³
+    double volume = 0.0;  ///< m³
 };
 struct UnseededIsland {
     std::size_t voxels = 0;
@@ -74,11 +74,11 @@ struct TouchingFace {
 };
 
 struct SegmentedScan {
-    segmentation::LabelMap map;            ///< of the whole scan
-    volume::Grid certainty;           ///< of the whole scan, 0 where there is no bone
+    segmentation::LabelMap map;  ///< of the whole scan
+    volume::Grid certainty;  ///< of the whole scan, 0 where there is no bone
     std::vector<SegmentedLabel> labels;
-    std::vector<UnseededIsland> islands;     ///< largest first
-    std::vector<UncertainPlace> uncertain;   ///< regions with certainty below 0.4, largest first
+    std::vector<UnseededIsland> islands;  ///< largest first
+    std::vector<UncertainPlace> uncertain;  ///< regions with certainty below 0.4, largest first
     std::vector<TouchingFace> touching;  ///< labels in contact without a gap, widest first: their faces are as scanned
     std::size_t marrow_voxels = 0;  ///< voxels that received the label of the nearest bone
     segmentation::GapLaw law;  ///< the law used; see segmentation::law_of_seeds
@@ -90,7 +90,7 @@ struct SegmentedScan {
 /// Returns the graph with the conductances for these seeds, or null if those of the scan itself apply. `law`: receives
 /// the law used.
 std::unique_ptr<segmentation::VoxelGraph> graph_for_seeds(const ScanGraph& scan, std::span<const std::uint8_t> seed,
-                                                     segmentation::GapLaw& law);
+                                                          segmentation::GapLaw& law);
 
 /// Throws Error for strokes that touch no bone, and for labels whose strokes are completely painted over by later ones;
 /// `seeds_file` is the name in the message.

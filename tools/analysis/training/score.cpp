@@ -109,8 +109,8 @@ void repeat_take(const fs::path& folder, const fs::path& out) {
     std::vector<std::string> losses = engine.losses();
     losses.insert(losses.end(), written.losses.begin(), written.losses.end());
     if (!losses.empty()) throw Error(losses.front());
-    file::write_whole_file(out / "summary.json", run::summary_json(engine, report, engine.progress_seconds(), false,
-                                                                       written.names, losses));
+    file::write_whole_file(out / "summary.json",
+                           run::summary_json(engine, report, engine.progress_seconds(), false, written.names, losses));
 }
 
 training::Task task_of(const run::TaskSummary& said, const fs::path& instead, const fs::path& folder) {

@@ -48,9 +48,8 @@ signal::Spectrogram spectrogram_of(const signal::Take& take) {
 /// Pairs of channels (from 1; 0: the mean of all) of the reference and the output; the first pair is the strongest.
 std::vector<std::pair<int, int>> compared_channels(const CompareSettings& settings, std::vector<std::string>& notes) {
     if (settings.channel) return {{*settings.channel, *settings.channel}};
-    const run::ChannelLevels r = run::channel_levels(settings.reference, settings.logs[0],
-                                                             settings.stretches[0]),
-                                 d = run::channel_levels(settings.output, settings.logs[1], settings.stretches[1]);
+    const run::ChannelLevels r = run::channel_levels(settings.reference, settings.logs[0], settings.stretches[0]),
+                             d = run::channel_levels(settings.output, settings.logs[1], settings.stretches[1]);
     const std::size_t first = r.strongest();
     const auto pair_of = [](std::size_t a, std::size_t b) {
         return std::pair(static_cast<int>(a) + 1, static_cast<int>(b) + 1);
@@ -113,9 +112,9 @@ ComparedPair compare_files(const CompareSettings& settings) {
     const std::vector<std::pair<int, int>> channels = compared_channels(settings, o.notes);
     const auto open = [&](bool is_output, int channel) {
         return run::TakeFile({is_output ? settings.output : settings.reference, is_output ? "output" : "reference",
-                                  settings.logs[is_output ? 1 : 0],
-                                  is_output ? settings.output_scale : settings.reference_scale, channel,
-                                  settings.stretches[is_output ? 1 : 0]});
+                              settings.logs[is_output ? 1 : 0],
+                              is_output ? settings.output_scale : settings.reference_scale, channel,
+                              settings.stretches[is_output ? 1 : 0]});
     };
     const run::TakeFile reference = open(false, channels.front().first);
     const run::TakeFile output = open(true, channels.front().second);
@@ -151,11 +150,12 @@ ComparedPair compare_files(const CompareSettings& settings) {
     if (o.comparison.highest < 1000.0)
         o.notes.push_back(fmt::format("judged from {:.0f} to {:.0f} Hz: what both can be trusted in",
                                       o.comparison.lowest, o.comparison.highest));
-    for (const auto& [name, inside] : {std::pair("reference", o.comparison.reference_inside),
-                                       std::pair("output", o.comparison.output_inside)})
+    for (const auto& [name, inside] :
+         {std::pair("reference", o.comparison.reference_inside), std::pair("output", o.comparison.output_inside)})
         if (inside > 0.0 && inside < 0.9)
-            o.notes.push_back(fmt::format("{:.0f} % of the power of the {} lies outside of {:.0f} to {:.0f} Hz and is not judged",
-                                          100.0 * (1.0 - inside), name, o.comparison.lowest, o.comparison.highest));
+            o.notes.push_back(
+                fmt::format("{:.0f} % of the power of the {} lies outside of {:.0f} to {:.0f} Hz and is not judged",
+                            100.0 * (1.0 - inside), name, o.comparison.lowest, o.comparison.highest));
     o.level_gap_db = level_gap(settings, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, settings.thresholds);
     return o;

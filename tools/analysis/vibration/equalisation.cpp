@@ -37,8 +37,7 @@ struct GainGrid {
                                std::abs(transform[k]));
         for (const double f : response.hz)
             if (f < 0.5 * equaliser.rate) gains.emplace_back(f, std::abs(equaliser.gain(f)));
-        for (const double f : {equaliser.lowest, equaliser.highest})
-            gains.emplace_back(f, std::abs(equaliser.gain(f)));
+        for (const double f : {equaliser.lowest, equaliser.highest}) gains.emplace_back(f, std::abs(equaliser.gain(f)));
         std::ranges::sort(gains);
         for (const auto& [f, gain] : gains) hz.push_back(f), filter.push_back(gain);
         for (const std::complex<double>& gain : vibration::interpolate(response, hz)) plant.push_back(std::abs(gain));

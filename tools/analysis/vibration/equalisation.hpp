@@ -27,14 +27,14 @@ struct EqualiseSettings {
 /// of both, because a notch may lie between the centres of two bands.
 struct Flatness {
     double before_db = 0.0, after_db = 0.0;  ///< largest deviation from the mean gain, dB
-    double after_hz = 0.0;                   ///< frequency of `after_db`
+    double after_hz = 0.0;  ///< frequency of `after_db`
     double boost_db = -400.0, boost_hz = 0.0;  ///< largest gain of the filter, at any frequency
     double loudest = std::numeric_limits<double>::infinity();  ///< peak of the loudest sine at the weakest frequency
     double loudest_hz = 0.0;
     struct Band {
-        double hz;         ///< centre of the third octave
+        double hz;  ///< centre of the third octave
         double filter_db;  ///< largest gain of the filter in it
-        double loudest;    ///< peak of the loudest sine at its weakest frequency
+        double loudest;  ///< peak of the loudest sine at its weakest frequency
     };
     std::vector<Band> bands;
 };
@@ -46,11 +46,11 @@ struct Programme {
 
 struct Equalisation {
     vibration::Equaliser equaliser;
-    std::string title, unit;               ///< title and unit of the response
+    std::string title, unit;  ///< title and unit of the response
     const vibration::ActuatorModel* actuator = nullptr;
-    double limit = 0.0;                    ///< drive limit, V
+    double limit = 0.0;  ///< drive limit, V
     Flatness flat;
-    std::optional<Programme> programme;    ///< with a signal only
+    std::optional<Programme> programme;  ///< with a signal only
 };
 
 /// Throws Error.

@@ -6,10 +6,10 @@
 #include "engine/run/engine.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
-#include "tools/run/load_plan.hpp"
-#include "tools/run/scratch_folder.hpp"
 #include "tools/analysis/patch_measure.hpp"
 #include "tools/analysis/vibration/card_channels.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/scratch_folder.hpp"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "assets/sound/recording_set.hpp"
-#include "tools/run/patch_choice.hpp"
 #include "tools/analysis/patch_steady.hpp"
 #include "tools/analysis/vibration/comparison.hpp"
+#include "tools/run/patch_choice.hpp"
 
 #include <memory>
 #include <optional>

@@ -76,7 +76,8 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
         verdict.time = "course over time";
     } else if (c.statistics) {
         add("statistics", c.statistics->deviation, 1.0, false,
-            fmt::format("worst statistic over time ({}), in units of its tolerance", c.statistics->worst).c_str(), high);
+            fmt::format("worst statistic over time ({}), in units of its tolerance", c.statistics->worst).c_str(),
+            high);
         verdict.time = "statistics";
     }
     add("level_gap_db", level_gap_db, limits.level_gap_db, false, "softer than the reference, dB", high);

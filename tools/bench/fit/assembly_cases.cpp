@@ -93,7 +93,7 @@ AssemblyScore put_together(const AssemblyCase& one) {
     const double begin = seconds_used();
     const analysis::PlanAssembly made =
         analysis::assemble(matching, fit::Arrangement(static_cast<std::size_t>(count)),
-                        std::vector<std::optional<plan::PlanFit>>(static_cast<std::size_t>(count)));
+                           std::vector<std::optional<plan::PlanFit>>(static_cast<std::size_t>(count)));
     AssemblyScore score;
     score.pieces = count;
     score.seconds = seconds_used() - begin;

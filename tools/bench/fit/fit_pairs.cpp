@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/fit/fit_pairs.hpp"
 
-#include "assets/plan/propose_paint.hpp"
 #include "assets/library/fibula.hpp"
 #include "assets/library/mandible.hpp"
+#include "assets/plan/propose_paint.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of a fracture the proposal from roughness finds, and how much intact surface it takes, with known truth.
-#include "assets/plan/propose_paint.hpp"
 #include "assets/file/json.hpp"
 #include "assets/library/fibula.hpp"
 #include "assets/library/mandible.hpp"
-#include "tools/bench/bench.hpp"
+#include "assets/plan/propose_paint.hpp"
 #include "tools/analysis/bone/fracture.hpp"
+#include "tools/bench/bench.hpp"
 
 #include <fmt/format.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // How straight the two halves of a long bone are put together: a small error of the face is a large one at the far end.
-#include "assets/plan/case_bones.hpp"
 #include "assets/file/json.hpp"
 #include "assets/library/fibula.hpp"
+#include "assets/plan/case_bones.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
-#include "tools/bench/bench.hpp"
 #include "tools/analysis/bone/fracture.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/bench/bench.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

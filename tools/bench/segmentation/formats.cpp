@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One scan as files of several types: `segment` must give them the same labels.
 #include "tools/bench/segmentation/formats.hpp"
-#include "tools/bench/segmentation/seeded_case.hpp"
 #include "tools/analysis/segmentation/segment_scan.hpp"
 #include "tools/analysis/workers.hpp"
+#include "tools/bench/segmentation/seeded_case.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -5,10 +5,10 @@
 #include "dsp/segmentation/random_walk.hpp"
 #include "dsp/segmentation/uncertain.hpp"
 #include "dsp/segmentation/watershed.hpp"
+#include "tools/analysis/workers.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/segmentation/formats.hpp"
 #include "tools/bench/segmentation/seeded_case.hpp"
-#include "tools/analysis/workers.hpp"
 
 #include <fmt/format.h>
 
@@ -215,7 +215,8 @@ Json cost_row(int edge, int labels, bool quiet) {
     max_memory_since();
     clock_gettime(CLOCK_MONOTONIC, &wall);
     const double begin = process_seconds();
-    const segmentation::Walks walks = segmentation::random_walks(graph, seed, labels, {}, nullptr, analysis::on_threads());
+    const segmentation::Walks walks =
+        segmentation::random_walks(graph, seed, labels, {}, nullptr, analysis::on_threads());
     const double seconds = process_seconds() - begin, memory = max_memory_since();
     clock_gettime(CLOCK_MONOTONIC, &done_at);
     const double elapsed =

@@ -183,7 +183,7 @@ int bench_vessel(const VesselBenchChoice& choice) {
         const VesselCase one = simulate::stenosis_case({}, 101);
         const vessel::Track track = vessel::follow(one.scan, one.seed).track;
         report::write_picture(vessel::straightened(one.scan, track.branches.at(0), 2.5 * one.radius), track.background,
-                               track.contrast, choice.pictures / "stenosis.png");
+                              track.contrast, choice.pictures / "stenosis.png");
     }
     if (is_chosen("search")) {
         rows.push_back(narrowing_search(choice.draws));

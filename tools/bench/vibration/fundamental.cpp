@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/file/json.hpp"
 #include "dsp/signal/spectrum/fundamental.hpp"
+#include "assets/file/json.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/vibration/machine_cases.hpp"
 

@@ -18,9 +18,9 @@ namespace tactus::bench {
 /// some with hum of the mains and a rate that wanders.
 struct MachineCase {
     double rate = 0.0, seconds = 0.0;  ///< Hz, s
-    double frequency = 0.0;            ///< Hz: mean over the record
-    double wander = 0.0;               ///< relative amplitude of the rate's slow variation
-    double snr_db = 0.0;               ///< of the sum of the orders over all noise
+    double frequency = 0.0;  ///< Hz: mean over the record
+    double wander = 0.0;  ///< relative amplitude of the rate's slow variation
+    double snr_db = 0.0;  ///< of the sum of the orders over all noise
     bool has_first = true, has_hum = false;
     std::vector<int> orders;
     std::vector<double> amplitudes;
@@ -50,7 +50,8 @@ struct MachineCase {
                 for (int k = 1; k <= count; ++k)
                     if (draw(0.0, 1.0) >= (k == 1 ? 0.25 : 0.1)) orders.push_back(k);
             }
-        } while (orders.empty() || std::accumulate(orders.begin(), orders.end(), 0, [](int a, int b) { return std::gcd(a, b); }) != 1);
+        } while (orders.empty() ||
+                 std::accumulate(orders.begin(), orders.end(), 0, [](int a, int b) { return std::gcd(a, b); }) != 1);
         std::ranges::sort(orders);
         has_first = orders.front() == 1;
         const double slope = draw(0.0, 2.0);
@@ -65,7 +66,8 @@ struct MachineCase {
         wander = draw(0.0, 1.0) < 0.5 ? 0.0 : draw_log(3e-4, 0.03);
         const double speed = draw_log(0.1, 2.0), start = draw(0.0, 6.28);
         has_hum = draw(0.0, 1.0) < 0.25;
-        const double mains = draw(0.0, 1.0) < 0.5 ? 50.0 : 60.0, hum = strongest * std::pow(10.0, draw(-20.0, 6.0) / 20.0);
+        const double mains = draw(0.0, 1.0) < 0.5 ? 50.0 : 60.0,
+                     hum = strongest * std::pow(10.0, draw(-20.0, 6.0) / 20.0);
         const double pole = draw(0.0, 1.0) < 0.5 ? 0.0 : 0.9;
         std::vector<std::complex<double>> phases;
         for (std::size_t i = 0; i < orders.size(); ++i) phases.push_back(std::polar(amplitudes[i], draw(0.0, 6.28)));
@@ -110,7 +112,8 @@ struct MachineCase {
                 if (p == q || std::gcd(p, q) != 1 || f < 5.0 || f > 1000.0) continue;
                 double kept = 0.0;
                 for (std::size_t i = 0; i < orders.size(); ++i)
-                    if (orders[i] % p == 0 && std::ranges::find(orders, orders[i] / p * q) != orders.end()) kept += weights[i];
+                    if (orders[i] % p == 0 && std::ranges::find(orders, orders[i] / p * q) != orders.end())
+                        kept += weights[i];
                 rival = std::max(rival, kept);
             }
         llr = told * seconds >= 2.0 ? all - rival : 0.0;

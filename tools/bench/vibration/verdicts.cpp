@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/json.hpp"
+#include "tools/analysis/vibration/verdict.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/vibration/verdict_cases.hpp"
-#include "tools/analysis/vibration/verdict.hpp"
 
 #include <fmt/format.h>
 

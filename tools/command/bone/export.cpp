@@ -5,9 +5,9 @@
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/bone/crop_bone.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/bone/crop_bone.hpp"
 
 #include <fmt/format.h>
 
@@ -41,9 +41,9 @@ void crop(std::vector<bone::Bone>& bones, const ExportChoice& choice, bool close
     if (!choice.cut_of.empty() && bones.size() != 1) throw Error("--cut-of needs one bone; choose it with --bone");
     for (bone::Bone& bone : bones)
         bone = analysis::part_of_bone(bone,
-                                   choice.crop.empty() ? analysis::box_of_cut(bone, bone::load_bone(choice.cut_of))
-                                                       : analysis::parse_box(choice.crop),
-                                   closed);
+                                      choice.crop.empty() ? analysis::box_of_cut(bone, bone::load_bone(choice.cut_of))
+                                                          : analysis::parse_box(choice.crop),
+                                      closed);
 }
 
 bone::BoneQuantity quantity_of(const std::string& text) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus fracture-surface: proposes the fracture surface of a fragment and applies manual corrections.
 #include "tools/analysis/bone/fracture_surface.hpp"
-#include "assets/plan/paint_file.hpp"
 #include "assets/file/json.hpp"
+#include "assets/plan/paint_file.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/bone/intact_side.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/bone/intact_side.hpp"
 
 #include <fmt/format.h>
 

@@ -3,12 +3,12 @@
 #include "assets/bone/import_steps.hpp"
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/bone/saw_spacing.hpp"
+#include "tools/analysis/workers.hpp"
 #include "tools/command/bone/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/bone/saw_spacing.hpp"
-#include "tools/analysis/workers.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -157,7 +157,8 @@ Action declare_import(VerbOptions& verb) {
             "--spacing,--isotropic", [choice](const double& mm) { choice->spacing = mm * 1e-3; },
             "resample to this grid spacing, mm")
         .unit("mm");
-    verb.add("--series", choice->series, "DICOM: the series to take, by its UID or the end of it; several between commas are joined");
+    verb.add("--series", choice->series,
+             "DICOM: the series to take, by its UID or the end of it; several between commas are joined");
     verb.flag("--fill-gaps", choice->fill_gaps, "DICOM: interpolate where slices are missing (default: refuse)");
     add_rescale(verb, [choice](const Rescale& rescale) { choice->rescale = rescale; });
     verb.call<double>(

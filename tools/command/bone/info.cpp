@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/bone/inspection.hpp"
+#include "tools/analysis/bone/saw_spacing.hpp"
 #include "tools/command/bone/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/inspection_picture.hpp"
-#include "tools/analysis/bone/inspection.hpp"
-#include "tools/analysis/bone/saw_spacing.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -123,7 +123,8 @@ int info(const InfoChoice& choice) {
 Action declare_info(VerbOptions& verb) {
     const auto choice = std::make_shared<InfoChoice>();
     verb.add("file", choice->input, "the file").required();
-    verb.add("--series", choice->how.series, "DICOM: the series to look at, by its UID or the end of it; several between commas are joined");
+    verb.add("--series", choice->how.series,
+             "DICOM: the series to look at, by its UID or the end of it; several between commas are joined");
     verb.flag("--fill-gaps", choice->how.fill_gaps, "DICOM: interpolate where slices are missing (default: refuse)");
     add_unit(verb, choice->how.unit);
     add_rescale(verb, [choice](const Rescale& rescale) { choice->how.rescale = rescale; });

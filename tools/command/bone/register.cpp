@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus register: registers a surface to another one of the same shape, as a whole or by parts.
 #include "assets/file/json.hpp"
+#include "tools/analysis/bone/registration.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/bone/registration.hpp"
 
 #include <fmt/format.h>
 
@@ -52,9 +52,7 @@ std::string_view verdict_text(fit::RegistrationVerdict verdict) {
 }
 
 /// Degrees between two poses.
-double angle_between(const Pose& a, const Pose& b) {
-    return analysis::motion_between(a, b, Vec3(0.0)).angle_deg;
-}
+double angle_between(const Pose& a, const Pose& b) { return analysis::motion_between(a, b, Vec3(0.0)).angle_deg; }
 
 Json json_of(const analysis::RegisteredSurface& found, bool region) {
     Json json = json_of(found.registration, found.pose);
@@ -92,8 +90,8 @@ void print_verdict(const fit::JudgedRegistration& judged) {
         case fit::RegistrationVerdict::ambiguous:
             fmt::print("verdict: ambiguous; rms {:.2f} mm. Other poses fit about as well:\n", judged.score * 1e3);
             for (const fit::JudgedRegistration::Rival& rival : judged.rivals)
-                fmt::print("  rotated by {:.1f}° against it, rms {:.2f} mm\n", angle_between(judged.best.pose, rival.pose),
-                           rival.score * 1e3);
+                fmt::print("  rotated by {:.1f}° against it, rms {:.2f} mm\n",
+                           angle_between(judged.best.pose, rival.pose), rival.score * 1e3);
             return;
         case fit::RegistrationVerdict::none:
             fmt::print("verdict: none; no pose brings the surfaces together (rms {:.2f} mm at the best)\n",
@@ -127,7 +125,9 @@ Action declare_register(VerbOptions& verb) {
     verb.add("moving", settings.moving, "bone file or mesh, which need not be closed").required();
     verb.add("fixed", settings.fixed, "bone file or mesh to register to").required();
     verb.flag("--mirror", settings.mirror, "the moving surface is from the other side of the body");
-    verb.flag("--anywhere", settings.anywhere, "the position in the files means nothing (default: of poses that fit equally well, the nearest to it is taken)");
+    verb.flag("--anywhere", settings.anywhere,
+              "the position in the files means nothing (default: of poses that fit equally well, the nearest to it is "
+              "taken)");
     verb.flag("--region", settings.region,
               "also find a part that is displaced against the rest, and register it separately");
     verb.add("--away", choice->away, "distance above which a point counts as displaced, mm")

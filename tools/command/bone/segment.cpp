@@ -9,13 +9,13 @@
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
+#include "tools/analysis/segmentation/segment_files.hpp"
+#include "tools/analysis/workers.hpp"
 #include "tools/command/bone/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/run/patch_choice.hpp"
 #include "tools/run/stop_signals.hpp"
-#include "tools/analysis/segmentation/segment_files.hpp"
-#include "tools/analysis/workers.hpp"
 #include "tools/window/paint/paint_view.hpp"
 
 #include <fmt/format.h>
@@ -251,7 +251,8 @@ Action declare_segment(VerbOptions& verb) {
         .unit("mm")
         .range(0.0, 20.0)
         .shows_default();
-    verb.add("--series", settings.read.series, "DICOM: the series to take, by its UID or the end of it; several between commas are joined");
+    verb.add("--series", settings.read.series,
+             "DICOM: the series to take, by its UID or the end of it; several between commas are joined");
     add_unit(verb, settings.read.unit);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return segment_bone(*choice); };

@@ -4,11 +4,11 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/bone/snapping.hpp"
 #include "tools/command/old_words.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/bone/snapping.hpp"
 
 #include <fmt/format.h>
 

@@ -245,7 +245,8 @@ Action declare_vessel(VerbOptions& verb) {
         .value_name("X,Y,Z:X,Y,Z");
     verb.add("--fibula", choice->fibula, "head of the fibula and tip of the lateral malleolus, mm, LPS")
         .value_name("X,Y,Z:X,Y,Z");
-    verb.add("--series", choice->settings.series, "DICOM: the series to read, by its UID or the end of it; several between commas are joined");
+    verb.add("--series", choice->settings.series,
+             "DICOM: the series to read, by its UID or the end of it; several between commas are joined");
     add_unit(verb, choice->settings.unit);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return follow(*choice); };

@@ -6,11 +6,11 @@
 #include "devices/haptic/catalogue.hpp"
 #include "devices/hosted/hosted_device.hpp"
 #include "dsp/core/units.hpp"
+#include "tools/analysis/display/calibration.hpp"
+#include "tools/analysis/display/touch_session.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/render/mark_window.hpp"
-#include "tools/analysis/display/calibration.hpp"
-#include "tools/analysis/display/touch_session.hpp"
 
 #include <fmt/format.h>
 
@@ -53,7 +53,7 @@ std::vector<display::Touch> touches_of(const CalibrateChoice& choice, const disp
     std::vector<display::Touch> steps = analysis::calibration_steps(choice.settings);
     analysis::check_screens(choice.settings, base);
     analysis::TouchLead lead(std::move(steps), !choice.settings.tracker.empty(),
-                          [&](std::span<const display::Touch> done) { display::fit_display(done, options); });
+                             [&](std::span<const display::Touch> done) { display::fit_display(done, options); });
     analysis::TipReader tip(
         open(choice.device, choice.device_options), haptic::is_real_driver(choice.device),
         display::parse_vector(choice.settings.tip, "mm"),

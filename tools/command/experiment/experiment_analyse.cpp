@@ -3,11 +3,11 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/units.hpp"
+#include "tools/analysis/experiment/analysis.hpp"
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/experiment_page.hpp"
-#include "tools/analysis/experiment/analysis.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus experiment check: the protocol, its orders, and whether the patch can present all levels.
 #include "dsp/core/error.hpp"
+#include "tools/analysis/experiment/run_experiment.hpp"
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/run/load_plan.hpp"
-#include "tools/analysis/experiment/run_experiment.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 #include "assets/experiment/observer_model.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/experiment/run_experiment.hpp"
 #include "tools/command/experiment/key_reader.hpp"
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
@@ -10,7 +11,6 @@
 #include "tools/run/load_plan.hpp"
 #include "tools/run/run_session.hpp"
 #include "tools/run/stop_signals.hpp"
-#include "tools/analysis/experiment/run_experiment.hpp"
 #include "tools/terminal.hpp"
 #include "tools/window/view.hpp"
 
@@ -68,7 +68,7 @@ public:
     }
 
     analysis::LiveEnd perform(const run::RunChoice& choice, const experiment::Condition& condition,
-                           std::atomic<bool>& over) {
+                              std::atomic<bool>& over) {
         analysis::LiveEnd end;
         if (has_window_) {
             window::ViewedRunChoice viewed;
@@ -102,8 +102,8 @@ private:
     compile::AssetCache assets_;
 };
 
-int run_one(const analysis::ExperimentChoice& choice, const analysis::ExperimentHooks& hooks, const std::atomic<bool>& stop,
-            bool is_only) {
+int run_one(const analysis::ExperimentChoice& choice, const analysis::ExperimentHooks& hooks,
+            const std::atomic<bool>& stop, bool is_only) {
     const analysis::ExperimentEnd end = analysis::run_experiment(choice, hooks, stop);
     for (const std::string& loss : end.losses) say(stderr, fmt::format("tactus: {}\n", loss));
     say(stdout,
@@ -145,8 +145,9 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     hooks.say = [&](const std::string& text) { say(stdout, text); };
     hooks.confirm = [&](const std::string& text, char key) { return person.confirm(text, key); };
     hooks.ask = [&](const experiment::Protocol& protocol) { return person.ask(protocol); };
-    hooks.perform = [&](const run::RunChoice& run, const experiment::Condition& condition,
-                        std::atomic<bool>& over) { return person.perform(run, condition, over); };
+    hooks.perform = [&](const run::RunChoice& run, const experiment::Condition& condition, std::atomic<bool>& over) {
+        return person.perform(run, condition, over);
+    };
     hooks.progress = [&](const analysis::TrialSpec& spec, int trials, int blocks) {
         if (choice.model)
             line.show(fmt::format("{}: trial {}, block {} of {}", choice.subject, trials, spec.block + 1, blocks));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus experiment withdraw: deletes a subject.
+#include "tools/analysis/experiment/experiment_folder.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/experiment/experiment_folder.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>

@@ -2,6 +2,9 @@
 // tactus gripper: measures how faithfully a gripper renders objects on the test rig.
 #include "assets/file/whole_file.hpp"
 #include "devices/display/png.hpp"
+#include "tools/analysis/gripper/rig_series.hpp"
+#include "tools/analysis/gripper/rig_study.hpp"
+#include "tools/analysis/workers.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/gripper/rig_text.hpp"
 #include "tools/command/patch_options.hpp"
@@ -9,9 +12,6 @@
 #include "tools/report/figures/rig_figures.hpp"
 #include "tools/report/figures/rig_page.hpp"
 #include "tools/run/load_plan.hpp"
-#include "tools/analysis/gripper/rig_series.hpp"
-#include "tools/analysis/gripper/rig_study.hpp"
-#include "tools/analysis/workers.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +39,8 @@ analysis::RigReport simulate(const RigChoice& choice, const analysis::RigMatrix&
     const auto progress = [&](int done_cells, int of) {
         line.show(progress_bar(static_cast<std::size_t>(done_cells), static_cast<std::size_t>(of), "cells"));
     };
-    analysis::RigReport report = analysis::study_rig(choice.patch, matrix, analysis::on_threads(choice.threads), progress, keep);
+    analysis::RigReport report =
+        analysis::study_rig(choice.patch, matrix, analysis::on_threads(choice.threads), progress, keep);
     line.clear();
     if (choice.keep_series) file::write_whole_file(choice.out / "series.csv", series);
     report.title = "Test rig: " + choice.patch.patch;

@@ -2,8 +2,8 @@
 #include "tools/command/plan/flap_text.hpp"
 
 #include "dsp/rope/measure.hpp"
-#include "tools/counted.hpp"
 #include "tools/analysis/plan/flap_words.hpp"
+#include "tools/counted.hpp"
 
 #include <fmt/format.h>
 

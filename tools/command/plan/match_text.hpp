@@ -2,8 +2,8 @@
 // The match of a fragment of a plan as text and JSON.
 #pragma once
 
-#include "tools/command/pose_text.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/command/pose_text.hpp"
 
 #include <numbers>
 #include <string>

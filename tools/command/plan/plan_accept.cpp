@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan accept: records a surgeon's decision that a fragment is where it belongs.
 #include "tools/analysis/plan/plan_accept.hpp"
-#include "tools/command/plan/plan_options.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
+#include "tools/command/plan/plan_options.hpp"
 
 #include <fmt/format.h>
 
@@ -19,11 +19,12 @@ int accept_place(const AcceptChoice& choice) {
     plan::CasePlan& plan = open.plan;
     const int fragment = plan::find_fragment(plan, choice.names.front());
     const analysis::AcceptedBy by = choice.by == "mirror" ? analysis::AcceptedBy::mirror
-                                 : choice.by == "plan" ? analysis::AcceptedBy::plan
-                                                       : analysis::AcceptedBy::hand;
+                                    : choice.by == "plan" ? analysis::AcceptedBy::plan
+                                                          : analysis::AcceptedBy::hand;
     std::optional<int> beside;
     if (!choice.beside.empty()) beside = plan::find_fragment(plan, choice.beside);
-    const analysis::Acceptance found = analysis::measure_acceptance(plan, choice.plan.parent_path(), fragment, by, beside);
+    const analysis::Acceptance found =
+        analysis::measure_acceptance(plan, choice.plan.parent_path(), fragment, by, beside);
     analysis::do_step(plan, analysis::step_of(plan, fragment, by, found), choice.plan);
     if (choice.json) return show_change(choice);
     fmt::print("{}: accepted by {} beside {}, residual {:.2f} mm; {:.0f} mm² face each other, {:.2f} mm deep\n",

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan alternative: named branches of a plan's history.
 #include "dsp/core/error.hpp"
+#include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/counted.hpp"
-#include "tools/analysis/plan/plan_case.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan group, add, ungroup, remove, lock, unlock, hide, unhide: each adds one step to the plan.
 #include "dsp/core/error.hpp"
-#include "tools/command/plan/plan_options.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
+#include "tools/command/plan/plan_options.hpp"
 
 namespace tactus::command {
 

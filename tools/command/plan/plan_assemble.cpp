@@ -2,12 +2,12 @@
 // tactus plan assemble: puts all shown fragments of a plan together as far as their fractures say how.
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/command/plan/match_text.hpp"
-#include "tools/command/plan/plan_options.hpp"
-#include "tools/counted.hpp"
 #include "tools/analysis/plan/match_reason.hpp"
 #include "tools/analysis/plan/plan_assembly.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/command/plan/match_text.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -52,7 +52,7 @@ Told told_of(const plan::CasePlan& plan, const analysis::PlanMatching& matching,
             : matching.faces_of(stays.match.moving) == 0
                 ? analysis::no_fracture_words(matching.as_scanned_area(stays.match.moving))
                 : analysis::why_not_placed(plan, matching, state.arrangement, stays, fit::Arrangement::none,
-                                        analysis::MatchWay::anywhere);
+                                           analysis::MatchWay::anywhere);
         told.reasons.push_back(std::move(reason));
     }
     for (const analysis::PlanOverlap& o : made.overlaps) told.problems.push_back(analysis::overlap_words(plan, o));

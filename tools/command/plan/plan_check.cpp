@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan check: whether a plan is finished and does not contradict itself, by its warnings.
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/json.hpp"
-#include "tools/command/plan/plan_options.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/command/plan/plan_options.hpp"
 
 #include <fmt/format.h>
 

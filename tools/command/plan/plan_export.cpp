@@ -2,9 +2,9 @@
 // tactus plan export: placed meshes, ITK transforms and 3D Slicer landmarks.
 #include "tools/analysis/plan/plan_export.hpp"
 #include "assets/file/json.hpp"
+#include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
-#include "tools/analysis/plan/plan_case.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,7 +23,8 @@ struct ExportChoice : PlanChoice {
 int export_plan(const ExportChoice& choice) {
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     Json written = Json::array();
-    const analysis::ExportedPlan exported = analysis::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format);
+    const analysis::ExportedPlan exported =
+        analysis::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format);
     for (const analysis::ExportedFragment& one : exported.written) {
         written.push_back({{"fragment", one.name}, {"files", one.files}, {"pose", pose_json<Json>(one.pose)}});
         if (!choice.json) fmt::print("{}\n", fmt::join(one.files, ", "));

@@ -2,8 +2,8 @@
 // tactus plan gap: gap, contact and overlap of placed fragments.
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/command/plan/plan_options.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/command/plan/plan_options.hpp"
 
 #include <fmt/format.h>
 

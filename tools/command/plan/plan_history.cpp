@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan undo and redo.
+#include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/counted.hpp"
-#include "tools/analysis/plan/plan_case.hpp"
 
 #include <fmt/format.h>
 

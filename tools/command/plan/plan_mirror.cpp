@@ -3,9 +3,9 @@
 #include "tools/analysis/plan/plan_mirror.hpp"
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/bone/intact_side.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
-#include "tools/analysis/bone/intact_side.hpp"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 // tactus plan move: places a fragment.
 #include "assets/transform/transform_file.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
-#include "tools/analysis/plan/plan_case.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

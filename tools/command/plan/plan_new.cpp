@@ -2,9 +2,9 @@
 // tactus plan new: makes a plan from files.
 #include "assets/bone/labels.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/counted.hpp"
-#include "tools/analysis/plan/plan_case.hpp"
 
 #include <fmt/format.h>
 
@@ -65,7 +65,7 @@ void add_file_of(plan::CasePlan& plan, std::vector<analysis::CaseFragment>& load
     }
     for (auto& [own, path] : found) {
         plan::add_fragment(plan, is_named ? name : own, path, folder,
-                            bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
+                           bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
         check_is_new(plan);
         // Loads every file now, so that wrong units, open surfaces and damaged files are reported before the session.
         loaded.push_back(analysis::load_fragment(plan.fragments.back(), folder));

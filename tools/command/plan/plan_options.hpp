@@ -2,10 +2,10 @@
 // Options and output shared by the verbs of plans.
 #pragma once
 
-#include "tools/command/options.hpp"
-#include "tools/exit_code.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
 
 #include <filesystem>
 #include <memory>

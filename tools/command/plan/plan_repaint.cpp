@@ -19,8 +19,8 @@ struct RepaintChoice : PlanChoice {
 int repaint_fragment(const RepaintChoice& choice) {
     analysis::OpenPlan open(choice.plan);
     const std::string& name = choice.fragment;
-    analysis::Repainted made = analysis::repaint(open.plan, choice.plan.parent_path(), plan::find_fragment(open.plan, name),
-                                           choice.file, choice.is_same_bone);
+    analysis::Repainted made = analysis::repaint(
+        open.plan, choice.plan.parent_path(), plan::find_fragment(open.plan, name), choice.file, choice.is_same_bone);
     analysis::do_step(open.plan, std::move(made.step), choice.plan);
     if (!choice.json)
         fmt::print("{}: {}, {}; poses stay, 'tactus plan undo' takes the file before back\n", name,

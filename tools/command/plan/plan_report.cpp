@@ -3,12 +3,12 @@
 #include "assets/file/json.hpp"
 #include "assets/file/outputs.hpp"
 #include "assets/file/whole_file.hpp"
-#include "tools/command/plan/plan_options.hpp"
-#include "tools/report/reconstruction/flap_report.hpp"
-#include "tools/report/plan/plan_page.hpp"
-#include "tools/report/figures/html_report.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/report/figures/html_report.hpp"
+#include "tools/report/plan/plan_page.hpp"
+#include "tools/report/reconstruction/flap_report.hpp"
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ int report(const ReportChoice& choice) {
     for (const std::string& note : warnings.notes) fmt::print(stderr, "note: {}\n", note);
     const std::vector<report::ReportBlock> blocks =
         report::plan_blocks(plan, warnings.all, std::move(fragments), std::move(residuals),
-                             healthy ? &*healthy : nullptr, report::flap_blocks(plan, folder));
+                            healthy ? &*healthy : nullptr, report::flap_blocks(plan, folder));
     file::write_whole_file(out, report::html::page(plan.title, report::html_of(blocks, "plan")));
     if (!choice.pdf.empty()) file::write_whole_file(choice.pdf, report::pdf_of(plan.title, blocks));
     file::Json written{{"report", out.string()}};

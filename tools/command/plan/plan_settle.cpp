@@ -2,10 +2,10 @@
 // tactus plan settle: refines fitted fragments against all their neighbours.
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/command/plan/match_text.hpp"
-#include "tools/command/plan/plan_options.hpp"
 #include "tools/analysis/plan/match_reason.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/command/plan/match_text.hpp"
+#include "tools/command/plan/plan_options.hpp"
 
 #include <fmt/format.h>
 

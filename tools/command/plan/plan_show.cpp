@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan show: the content of a plan as text or JSON.
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/json.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
-#include "tools/command/plan/plan_options.hpp"
-#include "tools/command/pose_text.hpp"
-#include "tools/command/plan/flap_text.hpp"
-#include "tools/counted.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
 #include "tools/analysis/plan/plan_vessels.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/command/plan/flap_text.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/command/pose_text.hpp"
+#include "tools/counted.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -2,9 +2,9 @@
 // tactus plan snap: moves a fragment of a plan to the pose where its fracture fits.
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/plan/match_reason.hpp"
 #include "tools/command/plan/match_text.hpp"
 #include "tools/command/plan/plan_options.hpp"
-#include "tools/analysis/plan/match_reason.hpp"
 
 #include <fmt/format.h>
 
@@ -35,12 +35,13 @@ int snap_fragment(const SnapChoice& choice) {
                                 analysis::no_fracture_words(matching.as_scanned_area(moving))));
     const analysis::MatchWay way = choice.mode == "global" ? analysis::MatchWay::anywhere : analysis::MatchWay::near;
     const analysis::PlanMatch found = way == analysis::MatchWay::anywhere
-                                       ? matching.anywhere(a, moving, only)
-                                       : matching.near(a, moving, analysis::Partners::standing_first, only);
+                                          ? matching.anywhere(a, moving, only)
+                                          : matching.near(a, moving, analysis::Partners::standing_first, only);
     const bool fits = found.match.verdict == fit::FitVerdict::fit;
     const std::string reason = analysis::why_not_placed(plan, matching, a, found, only, way);
     // Everything that may fail runs before the plan is changed.
-    const auto target = analysis::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
+    const auto target =
+        analysis::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
     // Where nothing fits, the distance there says nothing.
     const bool is_uncertain = found.match.verdict == fit::FitVerdict::uncertain;
     const bool has_place = fits || is_uncertain || found.as_scanned;

@@ -5,9 +5,9 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruction/plate_line.hpp"
-#include "tools/command/plan/plan_options.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 #include "tools/analysis/plan/plan_vessels.hpp"
+#include "tools/command/plan/plan_options.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

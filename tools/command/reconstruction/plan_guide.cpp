@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan guide: a printed guide for the cuts of a plan, as STL or 3MF.
 #include "tools/analysis/cutting_guide/plan_guide.hpp"
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/outputs.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/plan/plan_options.hpp"
@@ -46,8 +46,8 @@ analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy
 }
 
 void print_guide(const analysis::PlannedGuide& guide, const std::filesystem::path& out) {
-    fmt::print("{}: {} guide, {} triangles, {:.1f} cm³, closed, one part\n", out.string(), analysis::name_of(guide.bone),
-               guide.made.surface.triangles.size(), guide.volume * 1e6);
+    fmt::print("{}: {} guide, {} triangles, {:.1f} cm³, closed, one part\n", out.string(),
+               analysis::name_of(guide.bone), guide.made.surface.triangles.size(), guide.volume * 1e6);
     if (guide.wall) fmt::print("thinnest wall {:.2f} mm\n", guide.wall->thickness / mm);
     for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
         const cutting_guide::MadeSlot& slot = guide.made.slots[n];

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan paddle: places the skin paddle of a flap, and drapes it over a defect.
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/json.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/plan/paddle_study.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/report/reconstruction/paddle_picture.hpp"
-#include "tools/analysis/plan/paddle_study.hpp"
 
 #include <fmt/format.h>
 

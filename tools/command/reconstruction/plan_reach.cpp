@@ -2,11 +2,11 @@
 // tactus plan reach: whether the vessels of a flap reach, what comes near to what, and which way is best.
 #include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/command/plan/plan_options.hpp"
-#include "tools/command/plan/flap_text.hpp"
 #include "tools/analysis/plan/flap_candidate.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 #include "tools/analysis/plan/flap_words.hpp"
+#include "tools/command/plan/flap_text.hpp"
+#include "tools/command/plan/plan_options.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,8 @@ struct ReachChoice : PlanChoice {
 
 int take(const ReachChoice& choice) {
     const std::string name = choice.alternative.empty() ? fmt::format("candidate-{}", choice.take) : choice.alternative;
-    const analysis::TakenCandidate taken = analysis::take_candidate(choice.plan, static_cast<std::size_t>(choice.take), name);
+    const analysis::TakenCandidate taken =
+        analysis::take_candidate(choice.plan, static_cast<std::size_t>(choice.take), name);
     if (choice.json) return show_change(choice);
     fmt::print("{}: alternative '{}': {}\n", choice.plan.string(), name, analysis::candidate_words(taken.candidate));
     for (const analysis::CaseWarning& w : analysis::warnings_of(taken.candidate.plan, taken.candidate.measures))

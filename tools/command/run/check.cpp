@@ -2,6 +2,8 @@
 #include "assets/file/json.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/analyse/stiffness.hpp"
+#include "tools/analysis/passivity/z_width.hpp"
+#include "tools/analysis/patch_stiffness.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/check_rows.hpp"
 #include "tools/command/run/check_schedule.hpp"
@@ -10,8 +12,6 @@
 #include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/figures/z_width_figure.hpp"
 #include "tools/run/load_plan.hpp"
-#include "tools/analysis/passivity/z_width.hpp"
-#include "tools/analysis/patch_stiffness.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>

@@ -83,12 +83,14 @@ std::vector<std::string> schedule_warnings(const compile::Schedule& plan, const 
     std::vector<std::string> warnings;
     for (const analyse::ScheduledGroup& group : analyse::schedule_of(plan, cost_s))
         if (group.criticality <= compile::Criticality::force_value && !group.fits())
-            warnings.push_back(fmt::format(
-                "group '{}' ({}) needs {:.3g} us per call, and {} of its period of {:.4g} ms on one core: the hand will "
-                "miss ticks; lower its rate, or move nodes that no force depends on to another group",
-                group.group, analyse::describe(group.criticality), group.cost_s * 1e6,
-                group.response_s ? fmt::format("{:.0f} %", *group.response_s / group.period_s * 100.0) : "more than all",
-                group.period_s * 1e3));
+            warnings.push_back(
+                fmt::format("group '{}' ({}) needs {:.3g} us per call, and {} of its period of {:.4g} ms on one core: "
+                            "the hand will "
+                            "miss ticks; lower its rate, or move nodes that no force depends on to another group",
+                            group.group, analyse::describe(group.criticality), group.cost_s * 1e6,
+                            group.response_s ? fmt::format("{:.0f} %", *group.response_s / group.period_s * 100.0)
+                                             : "more than all",
+                            group.period_s * 1e3));
     return warnings;
 }
 

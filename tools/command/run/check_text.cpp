@@ -130,13 +130,15 @@ void print_plan(const Json& json) {
         fmt::print("{}\n", line);
     }
     if (json.contains("sound")) print_sound(json["sound"]);
-    fmt::print("Limit of stable stiffness: damping of the device with a hand on it / (period / 2 + latency, that of the "
-               "device included).\n");
+    fmt::print(
+        "Limit of stable stiffness: damping of the device with a hand on it / (period / 2 + latency, that of the "
+        "device included).\n");
     if (json.contains("outputs"))
         for (const Json& output : json["outputs"])
             if (output["energy_cap"].get<bool>())
-                fmt::print("{}: a contact returns at most {:.3g} mJ beyond 1.05 of what it took, and what a hand damps.\n",
-                           output["node"].get<std::string>(), output["energy_bound_mJ"].get<double>());
+                fmt::print(
+                    "{}: a contact returns at most {:.3g} mJ beyond 1.05 of what it took, and what a hand damps.\n",
+                    output["node"].get<std::string>(), output["energy_bound_mJ"].get<double>());
     if (json.contains("contact")) print_contact(json["contact"]);
     if (json.contains("device_classes")) print_classes(json["device_classes"]);
 }

@@ -28,7 +28,8 @@ struct ScoreChoice {
 std::vector<analysis::ScoredRun> scored(const std::vector<fs::path>& folders, const fs::path& task) {
     std::vector<analysis::ScoredRun> runs;
     for (const fs::path& folder : folders)
-        for (const fs::path& attempt : analysis::attempts_in(folder)) runs.push_back(analysis::score_run(attempt, task));
+        for (const fs::path& attempt : analysis::attempts_in(folder))
+            runs.push_back(analysis::score_run(attempt, task));
     return runs;
 }
 

@@ -62,7 +62,8 @@ Json row_of(const analysis::ScoredRun& run, std::span<const analysis::ReferenceM
 
 std::string score_json(const analysis::ScoredRun& run) { return json_of(run.score).dump(2) + "\n"; }
 
-std::string score_json(std::span<const analysis::ScoredRun> runs, std::span<const analysis::ReferenceMeasure> reference) {
+std::string score_json(std::span<const analysis::ScoredRun> runs,
+                       std::span<const analysis::ReferenceMeasure> reference) {
     if (runs.size() == 1 && reference.empty()) return score_json(runs.front());
     Json json{{"version", 1}, {"validity", not_validated}, {"rows", Json::array()}, {"learning", Json::array()}};
     for (const analysis::ScoredRun& run : runs) json["rows"].push_back(row_of(run, reference));
@@ -100,7 +101,8 @@ std::string score_csv(std::span<const analysis::ScoredRun> runs) {
     return text;
 }
 
-std::string score_text(std::span<const analysis::ScoredRun> runs, std::span<const analysis::ReferenceMeasure> reference) {
+std::string score_text(std::span<const analysis::ScoredRun> runs,
+                       std::span<const analysis::ReferenceMeasure> reference) {
     std::string text;
     const auto all = analysis::measures();
     for (const analysis::ScoredRun& run : runs) {

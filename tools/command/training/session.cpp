@@ -47,7 +47,8 @@ struct AttemptEnd {
     int code = done;
 };
 
-window::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training::TaskFile& task, const fs::path& at) {
+window::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training::TaskFile& task,
+                                       const fs::path& at) {
     window::ViewedRunChoice run = choice.run;
     run.patch = task.patch.empty() ? "saw-task" : task.patch;
     run.overrides.settings = task.settings;

@@ -15,8 +15,8 @@
 
 namespace tactus::command {
 
-using file::Json;
 using analysis::BodyOperation;
+using file::Json;
 
 namespace {
 

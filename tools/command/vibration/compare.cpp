@@ -81,7 +81,8 @@ std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<st
     return html::page(fmt::format("{} pairs of vibrations", pairs.size()), body);
 }
 
-std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures, const VerdictCounts& count) {
+std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures,
+                    const VerdictCounts& count) {
     file::Json json{{"verdict", count.bad + count.failed == 0 ? "pass" : "fail"},
                     {"passed", count.passed},
                     {"failed", count.failed},
@@ -132,7 +133,7 @@ int compare_many(const CompareChoice& choice, const analysis::CompareSettings& s
             if (choice.plot.empty()) return;
             const fs::path varied = fs::is_directory(settings.output) ? one.output : one.reference;
             report::write_figure(report::draw_comparison(pairs[i]),
-                                  fs::path(choice.plot) / (varied.filename().string() + ".svg"));
+                                 fs::path(choice.plot) / (varied.filename().string() + ".svg"));
         });
     const VerdictCounts count = count_of(pairs, failures);
     tell_failures(failures);

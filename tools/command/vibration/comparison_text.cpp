@@ -11,11 +11,11 @@
 
 namespace tactus::command {
 
-using file::Json;
 using analysis::ComparedPair;
 using analysis::Judged;
 using analysis::name_of_line;
 using analysis::touch_unit;
+using file::Json;
 
 namespace {
 
@@ -64,7 +64,8 @@ Json to_json(const ComparedPair& o) {
               {"verdict_scope", o.verdict.words()},
               {"failed", o.verdict.failed()},
               {"course_db", or_null(c.course_db)},
-              {"statistics", c.statistics ? Json{{"deviation", c.statistics->deviation}, {"worst", c.statistics->worst}} : Json()},
+              {"statistics",
+               c.statistics ? Json{{"deviation", c.statistics->deviation}, {"worst", c.statistics->worst}} : Json()},
               {"kurtosis", {{"reference", c.reference_kurtosis}, {"output", c.output_kurtosis}}},
               {"power_in_band", {{"reference", c.reference_inside}, {"output", c.output_inside}}},
               {"not_judged", o.verdict.not_judged},

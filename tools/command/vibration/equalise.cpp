@@ -2,9 +2,9 @@
 // tactus equalise: designs an inverse filter from a measured response and checks the actuator's limits.
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/vibration/equalisation.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/vibration/equalisation.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus measure: identifies a system in a patch or behind a sound card with a sine sweep.
 #include "assets/file/json.hpp"
-#include "tools/command/patch_options.hpp"
-#include "tools/exit_code.hpp"
 #include "tools/analysis/vibration/equalisation.hpp"
 #include "tools/analysis/vibration/measurement.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus model: fits the model of a saw to its recordings.
 #include "assets/file/json.hpp"
+#include "tools/analysis/vibration/saw_modelling.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/analysis/vibration/saw_modelling.hpp"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@ namespace tactus::command {
 
 namespace {
 
-using file::Json;
 using analysis::ModelDistance;
 using analysis::ModelledRecording;
+using file::Json;
 
 struct ModelChoice {
     analysis::SawModelSettings settings;

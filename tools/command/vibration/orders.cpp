@@ -5,13 +5,13 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
+#include "tools/analysis/vibration/level_reference.hpp"
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/command/vibration/waterfall_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/figures/waterfall_figure.hpp"
-#include "tools/analysis/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 // Options of the verbs that analyse records.
 #pragma once
 
+#include "tools/analysis/vibration/record.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
-#include "tools/analysis/vibration/record.hpp"
 
 #include <filesystem>
 #include <string>

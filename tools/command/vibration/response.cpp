@@ -5,12 +5,12 @@
 #include "assets/sound/response_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/vibration/two_channels.hpp"
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/figures/response_figure.hpp"
-#include "tools/analysis/vibration/two_channels.hpp"
 
 #include <fmt/format.h>
 

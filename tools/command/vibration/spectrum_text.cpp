@@ -4,11 +4,11 @@
 #include "assets/file/json.hpp"
 #include "dsp/core/readable.hpp"
 #include "dsp/signal/spectrum/decibels.hpp"
+#include "tools/analysis/vibration/level_reference.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/counted.hpp"
-#include "tools/analysis/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 
@@ -18,11 +18,11 @@
 
 namespace tactus::command {
 
-using file::Json;
-using signal::decibels;
 using analysis::AnalysedChannel;
 using analysis::AnalysedFile;
 using analysis::band_deviation;
+using file::Json;
+using signal::decibels;
 
 namespace {
 

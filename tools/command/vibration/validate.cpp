@@ -22,9 +22,9 @@ namespace tactus::command {
 
 namespace {
 
-using file::Json;
 using analysis::Validation;
 using analysis::ValidationRun;
+using file::Json;
 
 struct ValidateChoice {
     analysis::ValidateSettings settings;
@@ -48,7 +48,8 @@ Json run_json(const ValidationRun& run) {
     return json;
 }
 
-std::string json_text(const Validation& validation, const analysis::ValidateSettings& settings, const VerdictCounts& count) {
+std::string json_text(const Validation& validation, const analysis::ValidateSettings& settings,
+                      const VerdictCounts& count) {
     Json json{{"patch", validation.patch},
               {"set", validation.set->path.string()},
               {"synthesised", validation.set->synthesised},
@@ -98,7 +99,7 @@ int validate(const ValidateChoice& choice) {
         [&](std::size_t i,
             const std::function<void(double)>&) {  // Spectrograms are large, so they are computed for one level only.
             analysis::validate(validation, i, settings,
-                            pictures && validation.runs[i].level_db == settings.levels.front());
+                               pictures && validation.runs[i].level_db == settings.levels.front());
         });
     VerdictCounts count;
     count.bad = tell_failures(failures);
@@ -109,7 +110,7 @@ int validate(const ValidateChoice& choice) {
         ++(run.pair.verdict.passed() ? count.passed : count.failed);
         if (!choice.plot.empty())
             report::write_figure(report::draw_comparison(run.pair),
-                                  (choice.plot / (run.file_name() + ".svg")).string());
+                                 (choice.plot / (run.file_name() + ".svg")).string());
     }
     if (!choice.table.empty()) file::write_whole_file(choice.table, validation_csv(validation));
     if (!choice.report.empty()) file::write_whole_file(choice.report, report::validation_page(validation));

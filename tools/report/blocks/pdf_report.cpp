@@ -284,7 +284,8 @@ private:
     }
 
     /// `left`, `top` and `wide` in points; what is written over the picture with it.
-    void draw(const display::Image& picture, const render::LabelledPicture& over, double left, double top, double wide) {
+    void draw(const display::Image& picture, const render::LabelledPicture& over, double left, double top,
+              double wide) {
         const double scale = wide / picture.width, high = scale * picture.height, low = top - high;
         // The data of a PNG file is what FlateDecode with PNG predictors reads.
         std::string data;

@@ -43,7 +43,8 @@ std::string html_of(const render::LabelledPicture& picture) {
         "paint-order=\"stroke\" stroke-linejoin=\"round\"><style>text{{stroke:#fff;stroke-width:3px;"
         "paint-order:stroke;fill:#000}}</style>\n{4}{5}</svg></div><figcaption class=\"small\">{2}</figcaption>"
         "</figure>\n",
-        picture.image.width, picture.image.height, html::escaped(picture.caption), display::base64(display::png_bytes(picture.image)), texts, bar);
+        picture.image.width, picture.image.height, html::escaped(picture.caption),
+        display::base64(display::png_bytes(picture.image)), texts, bar);
 }
 
 }  // namespace tactus::report

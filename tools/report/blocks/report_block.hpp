@@ -45,7 +45,8 @@ struct PictureGrid {
     std::vector<render::LabelledPicture> pictures;
 };
 
-using ReportBlock = std::variant<Heading, Paragraph, ReportList, ReportTable, Drawing, render::LabelledPicture, PictureGrid>;
+using ReportBlock =
+    std::variant<Heading, Paragraph, ReportList, ReportTable, Drawing, render::LabelledPicture, PictureGrid>;
 
 /// HTML of the blocks, for html::page. Drawings get names that begin with `mark` (letters).
 std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark);

@@ -115,11 +115,11 @@ std::vector<render::LabelledPicture> guide_pictures(const analysis::PlannedGuide
     const Pose& frame = guide.made.frame;
     const Vec3 x = frame.rotate(Vec3(1.0, 0.0, 0.0)), y = frame.rotate(Vec3(0.0, 1.0, 0.0)),
                z = frame.rotate(Vec3(0.0, 0.0, 1.0));
-    return {render::labelled_picture(on_bone, glm::normalize(-z + 0.2 * x + 0.3 * y), "On the bone, from where it is put on",
-                             letters),
+    return {render::labelled_picture(on_bone, glm::normalize(-z + 0.2 * x + 0.3 * y),
+                                     "On the bone, from where it is put on", letters),
             render::labelled_picture(on_bone, glm::normalize(y - 0.25 * z), "From the side of its text"),
-            render::labelled_picture(on_bone, glm::normalize(-y - 0.5 * z + 0.3 * x), "From the side where the slots are open",
-                             letters),
+            render::labelled_picture(on_bone, glm::normalize(-y - 0.5 * z + 0.3 * x),
+                                     "From the side where the slots are open", letters),
             render::labelled_picture(alone, glm::normalize(z + 0.3 * x - 0.2 * y), "The side of the bone")};
 }
 

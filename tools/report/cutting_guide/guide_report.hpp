@@ -2,8 +2,8 @@
 // A guide as blocks of a report: pictures on its bone, dimensions of its slots and holes, warnings.
 #pragma once
 
-#include "tools/report/blocks/report_block.hpp"
 #include "tools/analysis/cutting_guide/plan_guide.hpp"
+#include "tools/report/blocks/report_block.hpp"
 
 #include <vector>
 

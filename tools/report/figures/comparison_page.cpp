@@ -125,7 +125,8 @@ std::string comparison_method(const analysis::ComparedPair& pair) {
         "strongest count. harmonic_error_db: the worst order's difference from the mean difference.</li>"
         "<li>Lines: Hann interpolation between bins; they stand 10 dB or more above their neighbourhood and within 60 "
         "dB of the strongest. Levels are dB re 1 of the record's unit, rms.</li>"
-        "<li>Over time: levels of 20 ms in the band. Aligned takes may differ by 3 dB rms (course_db). Of separate takes "
+        "<li>Over time: levels of 20 ms in the band. Aligned takes may differ by 3 dB rms (course_db). Of separate "
+        "takes "
         "the kurtosis, the spread of the level and the depth of its modulation must agree within a tolerance and the "
         "spread of their own halves (statistics); the order in time is then not judged.</li>"
         "<li>Spectrograms: Hann windows of 60 ms, each shown down to 60 dB below its own maximum.</li>"
@@ -137,13 +138,12 @@ std::string comparison_page(const analysis::ComparedPair& pair) {
     const bool passed = pair.verdict.passed();
     std::string failed;
     for (const std::string& name : pair.verdict.failed()) failed += (failed.empty() ? "" : ", ") + name;
-    std::string body =
-        fmt::format("<p>Reference: {}<br>Output: {}</p>\n<p class=\"{}\"><b>{}</b></p>\n",
-                    html::escaped(pair.reference.string()), html::escaped(pair.output.string()),
-                    passed ? "pass" : "fail", passed ? "Pass: every score reaches its threshold. " + html::escaped(pair.verdict.words()) + "."
-                                              : "Fail: " + failed);
-    return html::page(pair.verdict.words(),
-                      body + comparison_section(pair, "a") + comparison_method(pair));
+    std::string body = fmt::format(
+        "<p>Reference: {}<br>Output: {}</p>\n<p class=\"{}\"><b>{}</b></p>\n", html::escaped(pair.reference.string()),
+        html::escaped(pair.output.string()), passed ? "pass" : "fail",
+        passed ? "Pass: every score reaches its threshold. " + html::escaped(pair.verdict.words()) + "."
+               : "Fail: " + failed);
+    return html::page(pair.verdict.words(), body + comparison_section(pair, "a") + comparison_method(pair));
 }
 
 }  // namespace tactus::report

@@ -17,7 +17,8 @@ const std::string& failure_of(const std::vector<std::string>& failures, std::siz
 
 }  // namespace
 
-std::string comparison_summary(std::span<const analysis::ComparedPair> pairs, const std::vector<std::string>& failures) {
+std::string comparison_summary(std::span<const analysis::ComparedPair> pairs,
+                               const std::vector<std::string>& failures) {
     std::string out = "<table><tr><th>output</th>" + score_heading + "</tr>\n";
     for (std::size_t i = 0; i < pairs.size(); ++i)
         out += "<tr><td>" + html::escaped(analysis::pair_name(pairs[i], pairs)) + "</td>" +

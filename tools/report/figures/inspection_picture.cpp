@@ -135,7 +135,8 @@ void label(Canvas& canvas, const std::string& name, int left, int top) {
     canvas.paste(text, left + 6, top + panel - text.height - 6);
 }
 
-display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const render::PaintedPoints& paint, const Vec3& origin) {
+display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const render::PaintedPoints& paint,
+                                  const Vec3& origin) {
     std::vector<Vec3> normals(from.surface.vertices.size(), Vec3(0.0));
     display::PictureMesh mesh;
     for (const auto& t : from.surface.triangles) {

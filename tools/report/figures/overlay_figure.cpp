@@ -45,7 +45,8 @@ std::vector<Shown> curves_of(std::span<const analysis::AnalysedFile> files) {
                             file.calibration.unit));
         for (const analysis::AnalysedChannel& channel : file.channels)
             if (channel.report.psd.power.size() >= 8)
-                shown.push_back({{&channel.report.psd, analysis::level_reference(file.calibration), {}}, &file, &channel});
+                shown.push_back(
+                    {{&channel.report.psd, analysis::level_reference(file.calibration), {}}, &file, &channel});
     }
     if (shown.empty()) throw Error("no record is long enough for a spectrum");
     if (shown.size() > max_curves)

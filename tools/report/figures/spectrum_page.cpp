@@ -2,11 +2,11 @@
 #include "tools/report/figures/spectrum_page.hpp"
 
 #include "dsp/core/readable.hpp"
+#include "tools/analysis/vibration/level_reference.hpp"
+#include "tools/analysis/vibration/record.hpp"
 #include "tools/counted.hpp"
 #include "tools/report/figures/html_report.hpp"
 #include "tools/report/figures/spectrum_figure.hpp"
-#include "tools/analysis/vibration/level_reference.hpp"
-#include "tools/analysis/vibration/record.hpp"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "dsp/signal/spectrum/welch.hpp"
-#include "tools/report/figures/plot_panel.hpp"
-#include "tools/report/figures/mark_lines.hpp"
 #include "tools/analysis/vibration/level_reference.hpp"
+#include "tools/report/figures/mark_lines.hpp"
+#include "tools/report/figures/plot_panel.hpp"
 
 #include <span>
 #include <string>

@@ -25,7 +25,8 @@ const analysis::ReferenceMeasure* find(std::span<const analysis::ReferenceMeasur
     return found == group.end() || found->values.empty() ? nullptr : &*found;
 }
 
-std::string table_of_runs(std::span<const analysis::ScoredRun> runs, std::span<const analysis::ReferenceMeasure> group) {
+std::string table_of_runs(std::span<const analysis::ScoredRun> runs,
+                          std::span<const analysis::ReferenceMeasure> group) {
     std::string out = "<table><tr><th>measure</th>";
     for (std::size_t n = 0; n < runs.size(); ++n) out += fmt::format("<th class=\"n\">{}</th>", n + 1);
     if (!group.empty())
@@ -124,7 +125,8 @@ std::string curves(std::span<const analysis::ScoredRun> runs, std::span<const an
 
 }  // namespace
 
-std::string training_page(std::span<const analysis::ScoredRun> runs, std::span<const analysis::ReferenceMeasure> reference) {
+std::string training_page(std::span<const analysis::ScoredRun> runs,
+                          std::span<const analysis::ReferenceMeasure> reference) {
     const analysis::ScoredRun& last = runs.back();
     std::string body =
         "<p class=\"fail\"><b>These scores are not validated.</b> They describe one attempt in a simulation; they do "

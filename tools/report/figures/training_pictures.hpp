@@ -2,8 +2,8 @@
 // Pictures of one attempt: the cut bone, the face of the cut, and its course in time.
 #pragma once
 
-#include "tools/report/figures/axes.hpp"
 #include "tools/analysis/training/score.hpp"
+#include "tools/report/figures/axes.hpp"
 
 namespace tactus::report {
 

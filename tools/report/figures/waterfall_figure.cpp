@@ -2,9 +2,9 @@
 #include "tools/report/figures/waterfall_figure.hpp"
 
 #include "dsp/core/readable.hpp"
+#include "tools/analysis/vibration/level_reference.hpp"
 #include "tools/report/figures/axes.hpp"
 #include "tools/report/figures/heat.hpp"
-#include "tools/analysis/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 

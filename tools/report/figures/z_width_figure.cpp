@@ -106,7 +106,8 @@ display::Figure draw_z_width(const std::vector<analysis::ZWidthCurve>& curves) {
                     display::TextAnchor::start, true);
     figure.text({gap, top + height + 70.0},
                 "thin: bound of Colgate and Schenkel; squares: passivity border by motion; thick: the simulated device "
-                "begins to oscillate at the worst press; dashed: a period of delay more; dotted: friction takes what encoder steps give",
+                "begins to oscillate at the worst press; dashed: a period of delay more; dotted: friction takes what "
+                "encoder steps give",
                 10.0, soft);
     return figure;
 }

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "assets/mesh/mesh.hpp"
-#include "tools/render/labelled_picture.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
 #include "tools/analysis/plan/plan_vessels.hpp"
+#include "tools/render/labelled_picture.hpp"
 
 #include <optional>
 #include <string>

@@ -4,10 +4,10 @@
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/coarse_surface.hpp"
 #include "tools/counted.hpp"
+#include "tools/report/figures/html_report.hpp"
 #include "tools/report/plan/plan_gaps.hpp"
 #include "tools/report/plan/plan_scenes.hpp"
 #include "tools/report/plan/plan_tables.hpp"
-#include "tools/report/figures/html_report.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

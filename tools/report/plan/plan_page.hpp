@@ -3,9 +3,9 @@
 #pragma once
 
 #include "dsp/fit/registration/registration.hpp"
-#include "tools/report/blocks/report_block.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
+#include "tools/report/blocks/report_block.hpp"
 
 #include <optional>
 #include <string>

@@ -2,8 +2,8 @@
 #include "tools/report/plan/plan_scenes.hpp"
 
 #include "tools/render/flap_scene.hpp"
-#include "tools/report/plan/colour_bar.hpp"
 #include "tools/render/surface_map.hpp"
+#include "tools/report/plan/colour_bar.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/plan/plan_tables.hpp"
 
-#include "tools/counted.hpp"
 #include "tools/analysis/bone/fragment_file.hpp"
 #include "tools/analysis/bone/surface_file.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/counted.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -69,7 +69,8 @@ ReportTable fragments_table(const DrawnPlan& c) {
         const auto& fit = c.state.fits[n];
         const bool is_void = fit && !c.state.holds(number);
         if (!fit) row.insert(row.end(), {"–", "–", "–", "–", "–", "–"});
-        else if (is_void) row.insert(row.end(), {fit->partner, analysis::fit_words(c.state, number), "–", "–", "–", "–"});
+        else if (is_void)
+            row.insert(row.end(), {fit->partner, analysis::fit_words(c.state, number), "–", "–", "–", "–"});
         else
             row.insert(row.end(), {fit->partner, fit->verdict, fmt::format("{:.2f}", fit->score),
                                    fmt::format("{:.2f}", fit->margin), fmt::format("{:.3f}", fit->rms * 1e3),

@@ -2,9 +2,9 @@
 // Tables and lists of a plan's report.
 #pragma once
 
+#include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/report/blocks/report_block.hpp"
 #include "tools/report/plan/drawn_plan.hpp"
-#include "tools/analysis/plan/case_warnings.hpp"
 
 namespace tactus::report {
 

@@ -50,7 +50,8 @@ std::array<Vec3, 2> medial_and_anterior(const reconstruction::FibulaInputs& inpu
     return {medial, front};
 }
 
-BoneView view_of(const reconstruction::FibulaInputs& inputs, const geometry::TriangleSurface& donor, const Vec3& across) {
+BoneView view_of(const reconstruction::FibulaInputs& inputs, const geometry::TriangleSurface& donor,
+                 const Vec3& across) {
     constexpr double step = 2e-3;
     BoneView view{inputs.line_point, glm::normalize(inputs.line_direction), across, 0.0, {}, {}, {}};
     double low = infinity, high = -infinity;
@@ -122,7 +123,7 @@ double lean(const BoneView& view, const reconstruction::Plane& plane) {
 
 geometry::TriangleSurface donor_of(const reconstruction::FibulaInputs& inputs) {
     return reconstruction::parts_near_line(*inputs.donor, inputs.line_point, glm::normalize(inputs.line_direction),
-                                        inputs.farthest_from_line);
+                                           inputs.farthest_from_line);
 }
 
 std::array<BoneView, 2> views_of(const reconstruction::FibulaInputs& inputs) {
@@ -156,8 +157,10 @@ Figure donor_drawing(const reconstruction::FibulaInputs& inputs, const reconstru
         for (const reconstruction::FlapVessel& vessel : flap.vessels) {
             std::vector<FigurePoint> line;
             for (const Vec3& p : vessel.points) line.push_back(place.point(view.at(p), view.aside(p)));
-            figure.line(
-                line, of(vessel.kind == reconstruction::VesselKind::artery ? render::flap_artery_colour : render::flap_vein_colour), 1.4);
+            figure.line(line,
+                        of(vessel.kind == reconstruction::VesselKind::artery ? render::flap_artery_colour
+                                                                             : render::flap_vein_colour),
+                        1.4);
         }
         std::vector<std::pair<double, std::string>> dimensions;
         for (std::size_t n = 0; n < plan.segments.size(); ++n) {
@@ -237,8 +240,8 @@ Figure osteotomy_drawing(const reconstruction::FibulaInputs& inputs, const recon
         }
         const FigurePoint name = place.point(at + (keeps_knee_side ? 0.5 : -0.5) * reach, centre - 1e-3);
         figure.text(name, fmt::format("segment {}", segment + 1), 11.0, ink, display::TextAnchor::middle);
-        figure.text({place.left, height - 10.0}, fmt::format("{:+.1f}°", lean(view, plane)), 14.0, of(render::resected_colour),
-                    display::TextAnchor::start, true);
+        figure.text({place.left, height - 10.0}, fmt::format("{:+.1f}°", lean(view, plane)), 14.0,
+                    of(render::resected_colour), display::TextAnchor::start, true);
         figure.text({place.left + 70.0, height - 10.0},
                     fmt::format("on the line {:.1f} mm from the ankle's end", at * to_mm), 10.5, ink);
     }

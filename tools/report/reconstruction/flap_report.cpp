@@ -4,11 +4,11 @@
 #include "assets/reconstruction/flap_files.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/reconstruction/pedicle.hpp"
-#include "tools/report/reconstruction/flap_drawing.hpp"
-#include "tools/render/flap_scene.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 #include "tools/analysis/plan/flap_words.hpp"
+#include "tools/render/flap_scene.hpp"
+#include "tools/report/reconstruction/flap_drawing.hpp"
 
 #include <fmt/format.h>
 
@@ -48,18 +48,21 @@ Measured measured(const plan::CasePlan& plan, const plan::PlanAlternative& alter
     return m;
 }
 
-render::LabelledPicture jaw_picture(const plan::CasePlan& plan, const Measured& m, const fs::path& folder, bool is_before,
-                            const Vec3& direction, const std::string& caption) {
+render::LabelledPicture jaw_picture(const plan::CasePlan& plan, const Measured& m, const fs::path& folder,
+                                    bool is_before, const Vec3& direction, const std::string& caption) {
     std::vector<display::PictureMesh> meshes;
     std::vector<render::PictureLabel> labels;
     for (const int piece : m.state.pieces) {
         const plan::PlanFragment& fragment = plan.fragments[static_cast<std::size_t>(piece)];
-        const bool is_segment = analysis::is_segment(fragment.name), is_resected = fragment.name.starts_with("resected");
+        const bool is_segment = analysis::is_segment(fragment.name),
+                   is_resected = fragment.name.starts_with("resected");
         if (is_before ? is_segment : m.state.arrangement.is_hidden(piece)) continue;
         const geometry::TriangleSurface surface =
             analysis::surface_of_piece(plan::file_of(m.state.files[static_cast<std::size_t>(piece)].file, folder));
         const Pose pose = is_before ? Pose{} : m.state.arrangement.pose(piece);
-        const Vec3 colour = is_resected ? render::resected_colour : is_segment ? fragment.colour : Vec3(0.90, 0.86, 0.76);
+        const Vec3 colour = is_resected  ? render::resected_colour
+                            : is_segment ? fragment.colour
+                                         : Vec3(0.90, 0.86, 0.76);
         meshes.push_back(render::picture_mesh(surface, pose, {&colour, 1}));
         Vec3 middle(0.0);
         for (const Vec3& v : surface.vertices) middle += pose.apply(v) / static_cast<double>(surface.vertices.size());
@@ -68,9 +71,9 @@ render::LabelledPicture jaw_picture(const plan::CasePlan& plan, const Measured& 
     if (is_before) {
         const Vec3 colour(0.45, 0.15, 0.45);
         if (!m.study->tumour().empty())
-            meshes.push_back(
-                render::picture_mesh(reconstruction::read_surface(plan::file_of(m.study->reconstruction().tumour->file, folder)),
-                             {}, {&colour, 1}));
+            meshes.push_back(render::picture_mesh(
+                reconstruction::read_surface(plan::file_of(m.study->reconstruction().tumour->file, folder)), {},
+                {&colour, 1}));
     } else {
         render::add_hardware(meshes, labels, m.study->flap());
         render::add_vessels(meshes, labels, m.measures.vessels);

@@ -24,7 +24,8 @@ void write_paddle_picture(const analysis::FlapStudy& study, const analysis::Padd
     for (const auto& [file, pose] : study.placed_files())
         meshes.push_back(render::picture_mesh(analysis::surface_of_piece(file), pose, {&kept_bone_colour, 1}));
     const skin::DrapedPaddle& draped = found.draped;
-    meshes.push_back(render::picture_mesh(skin::shell_of(draped, found.settings.sheet.thickness), {}, {&paddle_colour, 1}));
+    meshes.push_back(
+        render::picture_mesh(skin::shell_of(draped, found.settings.sheet.thickness), {}, {&paddle_colour, 1}));
     for (const skin::PaddleRope& rope : draped.ropes)
         meshes.push_back(render::tube_mesh({rope.bone, rope.skin}, 0.6e-3, render::flap_artery_colour));
     // Obliquely, so that the thickness and what is below can be seen.

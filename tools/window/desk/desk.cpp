@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/desk/desk.hpp"
 
+#include "tools/window/desk/run_bar.hpp"
+#include "tools/window/desk/state_banner.hpp"
 #include "tools/window/frame/whole_window.hpp"
 #include "tools/window/hand/hand_offer.hpp"
-#include "tools/window/desk/run_bar.hpp"
 #include "tools/window/widgets/spots.hpp"
-#include "tools/window/desk/state_banner.hpp"
 #include "tools/window/widgets/theme.hpp"
 
 #include <fmt/format.h>

@@ -2,6 +2,9 @@
 // The layout of the window: all panels.
 #pragma once
 
+#include "tools/window/desk/questions.hpp"
+#include "tools/window/desk/take_bench.hpp"
+#include "tools/window/document/workbench.hpp"
 #include "tools/window/files/file_dialog.hpp"
 #include "tools/window/files/import_dialog.hpp"
 #include "tools/window/files/start_page.hpp"
@@ -9,18 +12,15 @@
 #include "tools/window/frame/command_list.hpp"
 #include "tools/window/frame/layout.hpp"
 #include "tools/window/frame/value_dialog.hpp"
+#include "tools/window/frame/window.hpp"
 #include "tools/window/patch/node_panel.hpp"
 #include "tools/window/patch/patch_panel.hpp"
 #include "tools/window/plan/plan_panel.hpp"
-#include "tools/window/desk/questions.hpp"
 #include "tools/window/scene/calibration_panel.hpp"
+#include "tools/window/scene/plan_slices.hpp"
 #include "tools/window/scene/scene_panel.hpp"
 #include "tools/window/signal/scopes.hpp"
-#include "tools/window/scene/plan_slices.hpp"
-#include "tools/window/desk/take_bench.hpp"
 #include "tools/window/training/train_panel.hpp"
-#include "tools/window/frame/window.hpp"
-#include "tools/window/document/workbench.hpp"
 
 #include <filesystem>
 #include <memory>

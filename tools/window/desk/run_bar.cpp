@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/desk/run_bar.hpp"
 
+#include "tools/window/desk/take_bench.hpp"
 #include "tools/window/frame/tooltip.hpp"
 #include "tools/window/widgets/spots.hpp"
-#include "tools/window/desk/take_bench.hpp"
 #include "tools/window/widgets/theme.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 // The toolbar: run, pause, record, undo, save, and the time.
 #pragma once
 
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 namespace tactus::window {
 

@@ -2,8 +2,8 @@
 // Says at the foot of the window why a hand feels no force, since when, and how to go on; gone when forces are back.
 #pragma once
 
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 namespace tactus::window {
 

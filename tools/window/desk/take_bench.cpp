@@ -36,7 +36,7 @@ std::set<std::string> scene_ports(const take::Take& take) {
     for (const std::string& text : texts) {
         patch::Problems problems;
         const std::optional<compile::Schedule> plan = plan_of(patch::read_patch(text, take.about.patch_file, problems),
-                                                          take.about.overrides, take.about.seed, nullptr, problems);
+                                                              take.about.overrides, take.about.seed, nullptr, problems);
         if (!plan) continue;
         const std::vector<std::string> ports = outline_of(*plan).ports();
         all.insert(ports.begin(), ports.end());

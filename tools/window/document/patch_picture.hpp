@@ -5,8 +5,8 @@
 
 #include "graph/compile/schedule.hpp"
 #include "graph/patch/patch_window.hpp"
-#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/document/wire_route.hpp"
+#include "tools/window/widgets/canvas.hpp"
 
 #include <optional>
 #include <string>

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "graph/compile/schedule.hpp"
-#include "tools/window/document/patch_picture.hpp"
 #include "tools/window/document/part_ports.hpp"
+#include "tools/window/document/patch_picture.hpp"
 
 #include <map>
 #include <string>

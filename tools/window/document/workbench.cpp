@@ -184,8 +184,7 @@ bool Workbench::cut_at(const Vec3& site) {
     patch::Problems problems;
     // A hundredth of a millimetre: no voxel is smaller.
     const Vec3 site_mm = glm::round(site * 1e5) * 1e-2;
-    const auto settings =
-        run::site_settings(patch::read_patch(editor_->text(), editor_->file(), problems), site_mm);
+    const auto settings = run::site_settings(patch::read_patch(editor_->text(), editor_->file(), problems), site_mm);
     if (settings.empty()) {
         tell("this patch has no bone to saw: a site needs a workspace or carve node with a bone", true);
         return false;
@@ -199,8 +198,7 @@ bool Workbench::cut_at(const Vec3& site) {
     const bool is_made = edit(
         [&](std::string_view text) {
             std::string changed(text);
-            for (const run::SiteSetting& s : settings)
-                changed = edit::with_setting(changed, s.node, s.param, s.value);
+            for (const run::SiteSetting& s : settings) changed = edit::with_setting(changed, s.node, s.param, s.value);
             return changed;
         },
         fmt::format("the saw works at {:g}, {:g}, {:g} mm", site_mm.x, site_mm.y, site_mm.z));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies of nodes and comments, within a patch and from one to another.
 #include "graph/edit/patch_arrange.hpp"
-#include "tools/window/document/workbench.hpp"
 #include "tools/window/document/clipboard_lane.hpp"
 #include "tools/window/document/thing_count.hpp"
+#include "tools/window/document/workbench.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hand of the patch: that of the window in place of the patch's own.
-#include "tools/window/document/hand_of_patch.hpp"
 #include "tools/window/document/case_run.hpp"
+#include "tools/window/document/hand_of_patch.hpp"
 #include "tools/window/document/workbench.hpp"
 
 #include <fmt/format.h>

@@ -2,10 +2,10 @@
 // The page that a window without a patch begins with.
 #pragma once
 
+#include "tools/window/document/patch_picture.hpp"
 #include "tools/window/document/start_list.hpp"
 #include "tools/window/files/window_memory.hpp"
 #include "tools/window/widgets/painter.hpp"
-#include "tools/window/document/patch_picture.hpp"
 
 #include <cstdint>
 #include <filesystem>

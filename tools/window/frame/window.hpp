@@ -5,8 +5,8 @@
 #include "devices/display/offscreen.hpp"
 #include "tools/window/frame/damage.hpp"
 #include "tools/window/frame/held_keys.hpp"
-#include "tools/window/frame/key_letters.hpp"
 #include "tools/window/frame/input_queue.hpp"
+#include "tools/window/frame/key_letters.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/hand/hand_offer.hpp"
 
-#include "tools/window/frame/tooltip.hpp"
 #include "tools/window/document/hand_of_patch.hpp"
+#include "tools/window/frame/tooltip.hpp"
 #include "tools/window/widgets/spots.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 // Lets mouse and keys move the hand in place of the device of the patch.
 #pragma once
 
-#include "tools/window/frame/commands.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/frame/commands.hpp"
 
 #include <vector>
 

@@ -4,9 +4,9 @@
 
 #include "devices/haptic/pulled_hand.hpp"
 #include "graph/compile/schedule.hpp"
+#include "tools/window/document/viewed_run.hpp"
 #include "tools/window/hand/hand_sight.hpp"
 #include "tools/window/hand/place_watch.hpp"
-#include "tools/window/document/viewed_run.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -2,8 +2,8 @@
 #include "tools/window/hand/scene_hand.hpp"
 
 #include "dsp/core/clock.hpp"
-#include "tools/window/frame/tooltip.hpp"
 #include "tools/window/document/hand_of_patch.hpp"
+#include "tools/window/frame/tooltip.hpp"
 #include "tools/window/widgets/spots.hpp"
 #include "tools/window/widgets/theme.hpp"
 

@@ -5,8 +5,8 @@
 #include "devices/display/scene_renderer.hpp"
 #include "tools/window/paint/bone_mesh.hpp"
 #include "tools/window/paint/paint_bench.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/scene/texture_target.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 #include <future>
 #include <memory>

@@ -79,9 +79,10 @@ PaintBench::PaintBench(const analysis::ScanGraph& scan, analysis::SegmentSetting
     : window(suggested_window(scan.scan)),
       scan_(scan),
       settings_(std::move(settings)),
-      painting_(
-          seeds,
-          [&scan](const segmentation::Stroke& stroke) { return segmentation::touches(scan.box, scan.node_of_voxel, stroke); }),
+      painting_(seeds,
+                [&scan](const segmentation::Stroke& stroke) {
+                    return segmentation::touches(scan.box, scan.node_of_voxel, stroke);
+                }),
       live_(scan, settings_.run),
       followers_(scan.scan, track_settings(scan), stem_of_seeds(seeds)) {
     const volume::Grid& box = scan.box;

@@ -2,9 +2,9 @@
 // Everything that the painting window can do, without a user interface: a window and a script call the same functions.
 #pragma once
 
-#include "tools/window/slices/live_labels.hpp"
 #include "tools/window/paint/live_vessels.hpp"
 #include "tools/window/paint/painting.hpp"
+#include "tools/window/slices/live_labels.hpp"
 #include "tools/window/slices/slice_plane.hpp"
 
 #include <future>

@@ -2,9 +2,9 @@
 // The layout of the painting window: three slices, the bone, tools and labels.
 #pragma once
 
+#include "tools/window/frame/window.hpp"
 #include "tools/window/paint/bone_panel.hpp"
 #include "tools/window/paint/slice_panel.hpp"
-#include "tools/window/frame/window.hpp"
 
 #include <array>
 

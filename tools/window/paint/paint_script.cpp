@@ -122,7 +122,8 @@ bool PaintScript::edit(const ScriptLine& line, PaintDesk& desk) {
     };
     const auto label_named = [&](const std::string& name) {
         const auto& labels = painting.labels();
-        return static_cast<std::size_t>(std::ranges::find(labels, name, &segmentation::SeedLabel::name) - labels.begin());
+        return static_cast<std::size_t>(std::ranges::find(labels, name, &segmentation::SeedLabel::name) -
+                                        labels.begin());
     };
     if (what == "label") {
         const std::size_t found = label_named(line.word(1));

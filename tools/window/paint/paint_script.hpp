@@ -2,8 +2,8 @@
 // Runs commands of the painting window from a file, line by line: for tests and pictures.
 #pragma once
 
-#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/files/script_line.hpp"
+#include "tools/window/widgets/canvas.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "tools/window/paint/paint_bench.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/slices/slice_view.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 namespace tactus::window {
 

@@ -2,9 +2,9 @@
 // The list of node types that opens on the canvas: type some words, choose, and the node is there.
 #pragma once
 
-#include "tools/window/widgets/painter.hpp"
-#include "tools/window/patch/type_search.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/patch/type_search.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 #include <optional>
 #include <string>

@@ -3,10 +3,10 @@
 
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
+#include "tools/window/document/part_ports.hpp"
 #include "tools/window/frame/elide.hpp"
 #include "tools/window/frame/tooltip.hpp"
 #include "tools/window/patch/type_search.hpp"
-#include "tools/window/document/part_ports.hpp"
 #include "tools/window/widgets/spots.hpp"
 #include "tools/window/widgets/theme.hpp"
 

@@ -2,10 +2,10 @@
 // The parameters of the selected node, and the catalogue of node types.
 #pragma once
 
-#include "tools/window/files/file_chooser.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/document/parameters.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/files/file_chooser.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 #include <filesystem>
 #include <functional>

@@ -2,12 +2,12 @@
 // The panel with the picture of the patch, edited with the mouse.
 #pragma once
 
-#include "tools/window/widgets/canvas.hpp"
+#include "tools/window/document/workbench.hpp"
 #include "tools/window/frame/commands.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/patch/node_palette.hpp"
 #include "tools/window/signal/feed.hpp"
-#include "tools/window/document/workbench.hpp"
+#include "tools/window/widgets/canvas.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 #include <map>
 #include <memory>

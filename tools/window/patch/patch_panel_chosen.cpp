@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is done with the chosen nodes, and comments, frames and the small map.
 #include "graph/patch/sub_patch.hpp"
+#include "tools/window/document/clipboard_lane.hpp"
 #include "tools/window/patch/patch_panel.hpp"
 #include "tools/window/widgets/spots.hpp"
 #include "tools/window/widgets/theme.hpp"
-#include "tools/window/document/clipboard_lane.hpp"
 
 #include <fmt/format.h>
 #include <imgui_stdlib.h>

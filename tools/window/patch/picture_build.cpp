@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture of a patch: nodes of its plan, closed sub-patches, and nodes that are not finished.
-#include "tools/window/patch/picture_arrange.hpp"
 #include "tools/window/document/unfinished.hpp"
+#include "tools/window/patch/picture_arrange.hpp"
 
 #include "dsp/core/units.hpp"
 #include "graph/patch/sub_patch.hpp"
@@ -301,6 +301,8 @@ private:
 
 PatchPicture picture_of(const PictureMatter& matter) { return Builder(matter).build(); }
 
-PatchPicture picture_of(const compile::Schedule& plan) { return picture_of(PictureMatter{&plan, nullptr, nullptr, {}}); }
+PatchPicture picture_of(const compile::Schedule& plan) {
+    return picture_of(PictureMatter{&plan, nullptr, nullptr, {}});
+}
 
 }  // namespace tactus::window

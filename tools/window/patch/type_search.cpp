@@ -2,8 +2,8 @@
 #include "tools/window/patch/type_search.hpp"
 
 #include "nodes/catalogue.hpp"
-#include "tools/window/frame/search.hpp"
 #include "tools/window/document/type_ports.hpp"
+#include "tools/window/frame/search.hpp"
 
 #include <algorithm>
 #include <functional>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Studies of the plan of a run, as its file has it: gaps, distance from the healthy side, page, files for other programs.
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/counted.hpp"
-#include "tools/report/plan/plan_page.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/analysis/plan/plan_export.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/counted.hpp"
+#include "tools/report/plan/plan_page.hpp"
 #include "tools/window/document/case_run.hpp"
 
 #include <fmt/format.h>
@@ -22,16 +22,18 @@ std::string gaps_of(const plan::CasePlan& plan, const fs::path& folder) {
     std::string text;
     const auto name = [&](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     for (const analysis::PlanGap& g : analysis::plan_gaps(plan, folder, {}))
-        text += g.gap.facing > 0.0
-                    ? fmt::format("{}, {}: gap {:.2f} mm (95 %: {:.2f} mm), overlap {:.1f} mm³\n", name(g.first),
-                                  name(g.second), analysis::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9)
-                    : fmt::format("{}, {}: overlap {:.1f} mm³\n", name(g.first), name(g.second), g.overlap * 1e9);
+        text +=
+            g.gap.facing > 0.0
+                ? fmt::format("{}, {}: gap {:.2f} mm (95 %: {:.2f} mm), overlap {:.1f} mm³\n", name(g.first),
+                              name(g.second), analysis::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9)
+                : fmt::format("{}, {}: overlap {:.1f} mm³\n", name(g.first), name(g.second), g.overlap * 1e9);
     return text.empty() ? "no two shown fragments face each other within 3 mm" : text;
 }
 
 std::string healthy_of(const plan::CasePlan& plan, const fs::path& folder) {
     std::string text;
-    const auto residuals = analysis::healthy_residuals(plan::state_of(plan), folder, analysis::load_fragments(plan, folder));
+    const auto residuals =
+        analysis::healthy_residuals(plan::state_of(plan), folder, analysis::load_fragments(plan, folder));
     for (std::size_t n = 0; n < residuals.size(); ++n)
         if (residuals[n])
             text += fmt::format("{}: {:.2f} mm from the mirrored side (median)\n", plan.fragments[n].name,
@@ -57,7 +59,7 @@ std::string made(CaseRun::Study what, const fs::path& file) {
             const auto healthy = analysis::healthy_side(plan::state_of(plan), folder);
             file::write_whole_file(
                 page, report::plan_page(plan, analysis::case_warnings(plan, folder).all, std::move(fragments),
-                                         std::move(residuals), healthy ? &*healthy : nullptr));
+                                        std::move(residuals), healthy ? &*healthy : nullptr));
             return fmt::format("report: {}", page.string());
         }
         case CaseRun::Study::files: {

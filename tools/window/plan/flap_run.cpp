@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/plan/flap_run.hpp"
 
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/json.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "dsp/reconstruction/plate_line.hpp"
 #include "tools/analysis/leaving.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
@@ -32,7 +32,8 @@ FlapRun::Verdicts verdicts_of(const plan::CasePlan& plan, const fs::path& folder
     analysis::FlapStudy study(plan, plan::state_of(plan), folder);
     const reconstruction::FlapMeasures measures = study.measures();
     FlapRun::Verdicts verdicts;
-    for (const reconstruction::SiteReach& reach : measures.reaches) verdicts.lines.push_back(analysis::reach_words(reach));
+    for (const reconstruction::SiteReach& reach : measures.reaches)
+        verdicts.lines.push_back(analysis::reach_words(reach));
     std::vector<reconstruction::Clearance> near = measures.clearances;
     std::ranges::sort(near, {}, &reconstruction::Clearance::distance);
     for (const reconstruction::Clearance& c : near)

@@ -59,7 +59,8 @@ void PlanAlternatives::tend() {
     std::vector<Vec3> middles;
     for (const auto& body : scene_.plan_bodies()) middles.push_back(body ? body->home.position : Vec3(0.0));
     differences_ = differences(*plan, plan->current, other, middles);
-    counting_.begin(analysis::Lane::studies, analysis::leaving([plan = *plan, other, folder = run_.file().parent_path()] {
+    counting_.begin(analysis::Lane::studies,
+                    analysis::leaving([plan = *plan, other, folder = run_.file().parent_path()] {
                         return Numbers{numbers_of_alternative(plan, plan.current, folder),
                                        numbers_of_alternative(plan, other, folder)};
                     }));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/plan/plan_comparison.hpp"
 
-#include "tools/counted.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/counted.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -66,8 +66,7 @@ std::vector<std::optional<Pose>> poses_of_alternative(const plan::CasePlan& plan
     return poses;
 }
 
-std::vector<std::string> differences(const plan::CasePlan& plan, int first, int second,
-                                     std::span<const Vec3> middles) {
+std::vector<std::string> differences(const plan::CasePlan& plan, int first, int second, std::span<const Vec3> middles) {
     const auto here = poses_of_alternative(plan, first), there = poses_of_alternative(plan, second);
     std::vector<std::string> lines;
     for (std::size_t n = 0; n < here.size(); ++n) {

@@ -55,7 +55,7 @@ void PlanMap::tend() {
     seen_ = seen;
     of_ = run_.written();
     making_.begin(analysis::Lane::studies, [kind = *kind_, plan = *run_.plan(), folder = run_.file().parent_path(),
-                                         bodies = std::move(bodies)](std::stop_token stop) {
+                                            bodies = std::move(bodies)](std::stop_token stop) {
         const StopScope scope(stop);
         return render::make_surface_map(kind, plan, folder, bodies, std::move(stop));
     });

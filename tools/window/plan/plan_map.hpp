@@ -3,8 +3,8 @@
 // file, and again after each step.
 #pragma once
 
-#include "tools/render/surface_map.hpp"
 #include "tools/analysis/beside.hpp"
+#include "tools/render/surface_map.hpp"
 #include "tools/window/document/case_run.hpp"
 #include "tools/window/scene/scene_panel.hpp"
 

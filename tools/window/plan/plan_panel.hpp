@@ -2,13 +2,13 @@
 // The steps of a plan that the patch changes, with undo and redo, and what can be done to the held or chosen fragments.
 #pragma once
 
-#include "tools/window/frame/commands.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/document/case_run.hpp"
+#include "tools/window/frame/commands.hpp"
 #include "tools/window/plan/flap_panel.hpp"
 #include "tools/window/plan/plan_alternatives.hpp"
 #include "tools/window/plan/plan_map.hpp"
 #include "tools/window/scene/scene_panel.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 namespace tactus::window {
 

@@ -5,10 +5,10 @@
 
 #include "tools/analysis/display/calibration.hpp"
 #include "tools/analysis/display/touch_lead.hpp"
+#include "tools/window/document/workbench.hpp"
 #include "tools/window/scene/mark_screen.hpp"
 #include "tools/window/scene/scene_panel.hpp"
 #include "tools/window/scene/touch_watch.hpp"
-#include "tools/window/document/workbench.hpp"
 
 #include <memory>
 #include <optional>

@@ -3,10 +3,10 @@
 // cursor that the scene shares.
 #pragma once
 
+#include "tools/window/document/case_run.hpp"
 #include "tools/window/files/file_chooser.hpp"
 #include "tools/window/files/window_memory.hpp"
 #include "tools/window/frame/commands.hpp"
-#include "tools/window/document/case_run.hpp"
 #include "tools/window/scene/scene_panel.hpp"
 #include "tools/window/slices/plan_outlines.hpp"
 #include "tools/window/slices/plan_scan.hpp"

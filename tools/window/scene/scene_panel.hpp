@@ -8,13 +8,13 @@
 #include "tools/render/markups.hpp"
 #include "tools/render/scene_model.hpp"
 #include "tools/render/sight.hpp"
+#include "tools/window/document/workbench.hpp"
 #include "tools/window/frame/commands.hpp"
 #include "tools/window/hand/pulled_hands.hpp"
 #include "tools/window/hand/scene_hand.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/scene/scene_motion.hpp"
 #include "tools/window/scene/scene_screens.hpp"
-#include "tools/window/document/workbench.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 #include <map>
 #include <memory>

@@ -2,8 +2,8 @@
 // A bar with the level of a sound: root mean square, and a line at the peak.
 #pragma once
 
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/signal/measures.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 namespace tactus::window {
 

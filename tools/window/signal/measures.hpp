@@ -3,9 +3,9 @@
 #pragma once
 
 #include "dsp/signal/spectrum/welch.hpp"
-#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/signal/axis.hpp"
 #include "tools/window/signal/feed.hpp"
+#include "tools/window/widgets/canvas.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -4,10 +4,10 @@
 
 #include "devices/display/figure.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
-#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/signal/axis.hpp"
 #include "tools/window/signal/feed.hpp"
 #include "tools/window/signal/measures.hpp"
+#include "tools/window/widgets/canvas.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -2,12 +2,12 @@
 // Scopes: outputs over time or as spectra.
 #pragma once
 
+#include "tools/window/document/workbench.hpp"
 #include "tools/window/frame/commands.hpp"
 #include "tools/window/frame/value_dialog.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/signal/feed.hpp"
 #include "tools/window/signal/plot.hpp"
-#include "tools/window/document/workbench.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -51,8 +51,8 @@ LiveLabelling live_labelling(const analysis::ScanGraph& scan, const std::vector<
     out.seed.assign(scan.graph.nodes(), 0);
     for (std::size_t l = 0; l < labels.size(); ++l)
         for (std::size_t s = 0; s < labels[l].strokes.size(); ++s)
-            if (segmentation::paint(scan.box, scan.node_of_voxel, labels[l].strokes[s], static_cast<std::uint8_t>(l + 1),
-                               out.seed) == 0 &&
+            if (segmentation::paint(scan.box, scan.node_of_voxel, labels[l].strokes[s],
+                                    static_cast<std::uint8_t>(l + 1), out.seed) == 0 &&
                 out.problem.empty())
                 out.problem = fmt::format(
                     "stroke {} of '{}' touches no bone from {:g} on: erase it, or end and choose "
@@ -73,7 +73,8 @@ LiveLabelling live_labelling(const analysis::ScanGraph& scan, const std::vector<
             first.seconds = since();
             preview(std::move(first));
         }
-        before = segmentation::random_walks(own ? *own : scan.graph, out.seed, count, {}, is_warm ? &*before : nullptr, run);
+        before =
+            segmentation::random_walks(own ? *own : scan.graph, out.seed, count, {}, is_warm ? &*before : nullptr, run);
         out.residual = before->residual;
         out.iterations = before->iterations;
         out.label = segmentation::labels_of(*before);

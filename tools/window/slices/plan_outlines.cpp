@@ -59,7 +59,8 @@ std::vector<Outline> cut_outlines(const geometry::TriangleSurface& surface, cons
     normal[axes_of(slice).normal] = 1.0;
     through[axes_of(slice).normal] = at;
     const Pose back = pose.inverse();
-    std::vector<Outline> lines = chained(reconstruction::section_of(surface, {back.apply(through), back.rotate(normal)}));
+    std::vector<Outline> lines =
+        chained(reconstruction::section_of(surface, {back.apply(through), back.rotate(normal)}));
     for (Outline& line : lines)
         for (Vec3& p : line) p = pose.apply(p);
     return lines;

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "dsp/geometry/iso_surface.hpp"
-#include "tools/render/scene_model.hpp"
 #include "tools/analysis/beside.hpp"
+#include "tools/render/scene_model.hpp"
 #include "tools/window/slices/slice_plane.hpp"
 
 #include <array>

@@ -6,8 +6,8 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
-#include "tools/render/section_grey.hpp"
 #include "tools/analysis/leaving.hpp"
+#include "tools/render/section_grey.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

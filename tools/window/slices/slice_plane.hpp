@@ -3,8 +3,8 @@
 #pragma once
 
 #include "dsp/volume/grid.hpp"
-#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/slices/live_labels.hpp"
+#include "tools/window/widgets/canvas.hpp"
 
 #include <array>
 #include <cstdint>

@@ -2,9 +2,9 @@
 #include "tools/window/training/train_panel.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/window/training/score_words.hpp"
 #include "tools/window/widgets/spots.hpp"
 #include "tools/window/widgets/theme.hpp"
-#include "tools/window/training/score_words.hpp"
 
 #include <fmt/format.h>
 

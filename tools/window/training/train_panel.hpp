@@ -4,8 +4,8 @@
 
 #include "assets/training/task_file.hpp"
 #include "engine/observe/observer.hpp"
-#include "tools/window/widgets/painter.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/widgets/painter.hpp"
 
 #include <future>
 #include <memory>

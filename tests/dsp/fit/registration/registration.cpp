@@ -237,7 +237,8 @@ std::vector<contact::SurfacePoint> bar_points(int rows, double bump) {
     std::vector<contact::SurfacePoint> points;
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < rows / 2; ++j) {
-            const double z = (-19.5 + 39.0 * (i + 0.5) / rows) * mm, u = 2.0 * std::numbers::pi * j / (rows / 2), h = 1e-5;
+            const double z = (-19.5 + 39.0 * (i + 0.5) / rows) * mm, u = 2.0 * std::numbers::pi * j / (rows / 2),
+                         h = 1e-5;
             const Vec3 across = glm::cross(at(u + h, z) - at(u - h, z), at(u, z + h) - at(u, z - h));
             points.push_back({at(u, z), glm::normalize(across), 1e-6, 0});
         }
@@ -252,8 +253,10 @@ TEST_CASE("a search from the position in the files finds every pose, and says wh
     const Pose start;
     const Random random{9};
     for (std::uint64_t n = 0; n < 4; ++n) {
-        const Vec3 axis = glm::normalize(Vec3(random.normal(3 * n), random.normal(3 * n + 1), random.normal(3 * n + 2)));
-        const Pose truth{Vec3(5.0, -10.0 * double(n), 3.0) * mm, rotation_by(axis * (0.5 * std::numbers::pi + 0.5 * double(n)))};
+        const Vec3 axis =
+            glm::normalize(Vec3(random.normal(3 * n), random.normal(3 * n + 1), random.normal(3 * n + 2)));
+        const Pose truth{Vec3(5.0, -10.0 * double(n), 3.0) * mm,
+                         rotation_by(axis * (0.5 * std::numbers::pi + 0.5 * double(n)))};
         // Another person's: a little larger.
         auto other = moved(moving, truth.inverse());
         if (n % 2 == 1)

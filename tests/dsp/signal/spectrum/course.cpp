@@ -27,8 +27,7 @@ signal::Course course_of(double seconds, const Value& value) {
 }  // namespace
 
 TEST_CASE("the kurtosis of a course is 1.5 for a sine and 3 for noise") {
-    const signal::Course sine =
-        course_of(20.0, [](std::size_t, double t) { return std::sin(full_turn * 233.0 * t); });
+    const signal::Course sine = course_of(20.0, [](std::size_t, double t) { return std::sin(full_turn * 233.0 * t); });
     const Random random{3};
     const signal::Course noise = course_of(40.0, [&](std::size_t i, double) { return random.normal(i); });
     CHECK(signal::CourseStatistics(sine.frames()).kurtosis() == Approx(1.5).epsilon(0.01));

@@ -43,9 +43,9 @@ TEST_CASE("a fitted rate has the Cramer-Rao deviation, and states it") {
         constexpr int seeds = 60;
         const double noise = 0.3, start = frequency + 0.02 * rate / count;
         for (int seed = 0; seed < seeds; ++seed) {
-            const signal::HarmonicFit fit = signal::fit_harmonics(
-                orders(frequency, rate, count, noise, static_cast<std::uint64_t>(seed)), rate, start,
-                std::array{1, 2, 3, 4}, {});
+            const signal::HarmonicFit fit =
+                signal::fit_harmonics(orders(frequency, rate, count, noise, static_cast<std::uint64_t>(seed)), rate,
+                                      start, std::array{1, 2, 3, 4}, {});
             square += (fit.frequency - frequency) * (fit.frequency - frequency) / seeds;
             stated += fit.deviation / seeds;
         }

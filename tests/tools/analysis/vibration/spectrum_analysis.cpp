@@ -63,7 +63,8 @@ TEST_CASE("a program adds up the exposure of a day without the command") {
     const Folder folder;
     analysis::ExposureSettings settings;
     settings.uncalibrated = true;
-    const analysis::ExposureOperation hour = analysis::analyse_exposure(sine_log(folder), settings, 3600.0, [](double) {});
+    const analysis::ExposureOperation hour =
+        analysis::analyse_exposure(sine_log(folder), settings, 3600.0, [](double) {});
     CHECK(hour.is_lower_bound());
     const std::vector<analysis::ExposureOperation> twice{hour, hour};
     const auto day = analysis::exposure_of_day(twice);

@@ -156,8 +156,7 @@ void put_together(int seconds, std::size_t pieces, int rests) {
 }  // namespace
 
 // Costly: 9 s of the patch, and its replay.
-TEST_CASE("render planning-trauma: the first pieces within 0.3 mm and 0.5 degrees, the chain within 0.5 mm",
-          "[slow]") {
+TEST_CASE("render planning-trauma: the first pieces within 0.3 mm and 0.5 degrees, the chain within 0.5 mm", "[slow]") {
     put_together(9, 2, 5);
 }
 

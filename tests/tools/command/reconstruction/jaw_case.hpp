@@ -19,8 +19,8 @@ namespace tactus::test {
 
 /// A jaw as half a ring of radius 40 mm with its chin at y = -40 mm; a part of it from `from` to `to`, 0 to 1.
 inline geometry::TriangleSurface half_ring(double thick = 6e-3, double from = 0.0, double to = 1.0) {
-    geometry::TriangleSurface ring = reconstruction::closed_tube(Vec3(0.0, 0.0, from), Vec3(0.0, 0.0, 1.0), to - from, 40,
-                                                              81, [&](double, double) { return thick; });
+    geometry::TriangleSurface ring = reconstruction::closed_tube(Vec3(0.0, 0.0, from), Vec3(0.0, 0.0, 1.0), to - from,
+                                                                 40, 81, [&](double, double) { return thick; });
     for (Vec3& v : ring.vertices) {
         const double a = std::numbers::pi * v.z;
         v = (40e-3 + v.x) * Vec3(-std::cos(a), -std::sin(a), 0.0) + Vec3(0.0, 0.0, -v.y);
@@ -37,8 +37,8 @@ struct JawCase {
     std::string plan = (folder.path / "case.plan.json").string();
 
     JawCase() {
-        geometry::TriangleSurface bone = reconstruction::closed_tube(Vec3(0.1, 0.0, -0.2), Vec3(0.0, 0.0, 1.0), 0.33, 40,
-                                                                  61, [](double, double) { return 7e-3; });
+        geometry::TriangleSurface bone = reconstruction::closed_tube(Vec3(0.1, 0.0, -0.2), Vec3(0.0, 0.0, 1.0), 0.33,
+                                                                     40, 61, [](double, double) { return 7e-3; });
         mesh::write_mesh(std::vector<mesh::ColouredSurface>{{bone, {}}}, folder.path / "fibula.stl");
         mesh::write_mesh(std::vector<mesh::ColouredSurface>{{half_ring(), {}}}, folder.path / "jaw.stl");
     }

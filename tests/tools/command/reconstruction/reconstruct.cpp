@@ -94,8 +94,8 @@ TEST_CASE("a tooth in the resected part of a jaw is resected with it", "[slow]")
     double tooth_volume = 0.0;
     for (const double turn : {0.4, 1.5, 2.7}) {
         const Vec3 at(-40.0 * mm * std::cos(turn), -40.0 * mm * std::sin(turn), 6.5 * mm);
-        geometry::TriangleSurface tooth =
-            reconstruction::closed_tube(at, Vec3(0.0, 0.0, 1.0), 5.0 * mm, 6, 2, [](double, double) { return 2.0 * mm; });
+        geometry::TriangleSurface tooth = reconstruction::closed_tube(at, Vec3(0.0, 0.0, 1.0), 5.0 * mm, 6, 2,
+                                                                      [](double, double) { return 2.0 * mm; });
         if (mesh::volume_of(tooth) < 0.0)
             for (auto& t : tooth.triangles) std::swap(t[1], t[2]);
         tooth_volume = mesh::volume_of(tooth);
@@ -121,8 +121,9 @@ TEST_CASE("a hollow jaw is cut into hollow pieces, not into bone and marrow", "[
     geometry::TriangleSurface jaw = half_ring();
     // A canal through both rami and the chin, and a pore in the resected part that no plane meets.
     geometry::TriangleSurface canal = half_ring(2.0 * mm, 0.05, 0.95);
-    geometry::TriangleSurface pore = reconstruction::closed_tube(Vec3(-2.0 * mm, -44.0 * mm, 0.0), Vec3(1.0, 0.0, 0.0),
-                                                              4.0 * mm, 12, 4, [](double, double) { return 1.0 * mm; });
+    geometry::TriangleSurface pore =
+        reconstruction::closed_tube(Vec3(-2.0 * mm, -44.0 * mm, 0.0), Vec3(1.0, 0.0, 0.0), 4.0 * mm, 12, 4,
+                                    [](double, double) { return 1.0 * mm; });
     if (mesh::volume_of(pore) < 0.0)
         for (auto& t : pore.triangles) std::swap(t[1], t[2]);
     for (geometry::TriangleSurface* cavity : {&canal, &pore}) {

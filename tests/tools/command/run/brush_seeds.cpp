@@ -94,7 +94,7 @@ TEST_CASE("a hand that paints by feel makes the seeds that the mouse would make,
     }
     painting.end();
     segmentation::write_seeds(std::vector{segmentation::SeedLabel{"left", {}, painting.labels()[0].strokes}},
-                         folder.path / "mouse.json");
+                              folder.path / "mouse.json");
     CHECK(test::slurp(folder.path / "mouse.json") == test::slurp(folder.path / "out/seeds.json"));
 
     // From free space to free space: the patch may not have done work on the hand.

@@ -394,8 +394,8 @@ TEST_CASE("a log of a million lines takes a fraction of the memory of its number
     const auto kilobytes = [&](int rows) {
         std::string text = "a\n";
         for (int n = 0; n < rows; ++n) text += fmt::format("{:.5f}\n", 1.5 * std::sin(0.0785398 * n));
-        const auto peak = tactus::test::peak_memory(
-            {"spectrum", folder.write("long.csv", text).string(), "--sample-rate", "10 kHz"});
+        const auto peak =
+            tactus::test::peak_memory({"spectrum", folder.write("long.csv", text).string(), "--sample-rate", "10 kHz"});
         CHECK(peak.code == 0);
         return peak.kilobytes;
     };

@@ -4,10 +4,10 @@
 #include "tests/support/places.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/window/files/file_chooser.hpp"
 #include "tools/window/document/start_list.hpp"
-#include "tools/window/files/window_memory.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/files/file_chooser.hpp"
+#include "tools/window/files/window_memory.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -5,8 +5,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tools/window/document/hand_of_patch.hpp"
-#include "tools/window/widgets/spots.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/widgets/spots.hpp"
 
 #include <imgui.h>
 

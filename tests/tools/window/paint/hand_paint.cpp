@@ -10,8 +10,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/window/on_display.hpp"
-#include "tools/window/slices/live_labels.hpp"
 #include "tools/window/paint/painting.hpp"
+#include "tools/window/slices/live_labels.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -41,7 +41,7 @@ TEST_CASE("what a brush says tick by tick gives the strokes that it recorded, to
         std::uint64_t draw = 0;
         segmentation::StrokeRecorder recorder(1000, 20'000);
         window::Painting painting(folder.path / fmt::format("{}.json", seed),
-                                [](const segmentation::Stroke&) { return true; });
+                                  [](const segmentation::Stroke&) { return true; });
         window::BrushStrokes brush("left wing");
         Vec3 at(0.0);
         bool is_down = false, erases = false;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is painted, without a window: strokes, their file, undo, the eraser, and the labels that follow.
 #include "assets/bone/bone.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/plan/case_plan.hpp"
 #include "assets/plan/plan_file.hpp"
-#include "assets/file/whole_file.hpp"
 #include "assets/segmentation/erase_strokes.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/constants.hpp"
@@ -317,7 +317,8 @@ TEST_CASE("a painting that cannot be written is kept in the window and says so")
     CHECK_FALSE(painting.save());
     std::filesystem::create_directory(scene.folder.path / "none");
     CHECK(painting.save());
-    CHECK(segmentation::read_seeds(scene.folder.path / "none/seeds.json", segmentation::SeedsUse::draft)[0].strokes.size() == 1);
+    CHECK(segmentation::read_seeds(scene.folder.path / "none/seeds.json", segmentation::SeedsUse::draft)[0]
+              .strokes.size() == 1);
     scene.folder.write("bad.json", "{\"labels\": 3}");
     CHECK_THROWS_AS(Painting(scene.folder.path / "bad.json", [](const segmentation::Stroke&) { return true; }), Error);
 }

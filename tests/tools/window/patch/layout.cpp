@@ -2,12 +2,12 @@
 #include "nodes/catalogue.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/patches.hpp"
-#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/document/parameters.hpp"
 #include "tools/window/document/patch_change.hpp"
 #include "tools/window/document/patch_picture.hpp"
 #include "tools/window/signal/axis.hpp"
 #include "tools/window/signal/plot.hpp"
+#include "tools/window/widgets/canvas.hpp"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/window/document/part_ports.hpp"
-#include "tools/window/patch/wire_choices.hpp"
 #include "tools/window/document/workbench.hpp"
+#include "tools/window/patch/wire_choices.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/document/live_commands.hpp"
 
-#include "assets/plan/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "tests/tools/window/plan/plan_rig.hpp"
 
 using namespace tactus;
