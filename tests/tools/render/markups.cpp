@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 
 TEST_CASE("lengths and angles become markups of Slicer in millimetres") {
     const std::vector<Measurement> all{{"width", {Vec3(0.0), Vec3(0.012, 0.0, 0.0)}},

@@ -19,7 +19,7 @@
 #include <vector>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 using namespace tactus::test;
 
 TEST_CASE("a body has the colours of the map that is used, and its own again without one") {

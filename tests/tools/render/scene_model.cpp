@@ -19,7 +19,7 @@
 #include <vector>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 using namespace tactus::test;
 
 TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {

@@ -10,7 +10,7 @@
 #include <string>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 using namespace tactus::run;
 
 namespace {

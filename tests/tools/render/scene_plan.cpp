@@ -21,7 +21,7 @@
 #include <vector>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 using tactus::test::can_render;
 
 TEST_CASE("the vessels of a plan's scan are in the picture where they were scanned, until the plan is gone") {

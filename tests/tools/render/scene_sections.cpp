@@ -16,7 +16,7 @@
 #include <thread>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 using namespace tactus::test;
 
 TEST_CASE("a section shows in grey the density of the place that is cut, whatever the view and the plane") {

@@ -18,7 +18,7 @@
 #include <vector>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 using namespace tactus::test;
 
 namespace {

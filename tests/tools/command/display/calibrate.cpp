@@ -16,7 +16,7 @@
 #include <cmath>
 
 using namespace tactus;
-using namespace tactus::report;
+using namespace tactus::render;
 using namespace tactus::test;
 using nlohmann::json;
 
