@@ -94,7 +94,7 @@ TEST_CASE("several bones go into one mesh file, and what cannot be written is re
     mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}, {moved, {}}}, folder / "two.ply");
     CHECK(mesh::topology_of(mesh::load_mesh(folder / "two.ply")).components == 2);
     CHECK_THROWS_WITH(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "ball.obj"),
-                      ContainsSubstring(".stl or .ply"));
+                      ContainsSubstring(".stl, .ply or .3mf"));
     CHECK_THROWS_WITH(mesh::write_mesh({}, folder / "none.stl"), ContainsSubstring("no triangles"));
     CHECK_THROWS_AS(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "absent" / "ball.stl"),
                     Error);
