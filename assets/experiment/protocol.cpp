@@ -28,7 +28,7 @@ constexpr std::size_t max_conditions = 24, max_tasks = 12, max_measures = 16, ma
 class ProtocolReader : TomlValues {
 public:
     explicit ProtocolReader(const fs::path& path) : TomlValues(path, "an experiment file") {
-        protocol_.file = fs::absolute(path);
+        protocol_.file = fs::absolute(path).lexically_normal();
     }
 
     Protocol read() {
@@ -195,6 +195,9 @@ private:
             fail(windows, "each interval needs a parameter and a window");
         if (const auto* node = table.get("step"))
             stimulus.step = quantity(*node, stimulus.level_unit(), 0.0, stimulus.max);
+        if (stimulus.step > 0.0 &&
+            std::ceil(stimulus.min / stimulus.step - 1e-9) > std::floor(stimulus.max / stimulus.step + 1e-9))
+            fail(*table.get("step"), "no multiple of the step lies between min and max");
         if (const auto* node = table.get("tolerance")) stimulus.tolerance = number(*node, 1e-4, 1.0);
         for (std::size_t i = 0; i < standards_.size(); ++i) {
             if (!standards_[i]) continue;
@@ -337,7 +340,14 @@ private:
         else if (const auto* node = table.get("other")) fail(*node, "only 'slope' and 'lag' compare with another port");
         if (measure.kind == Kind::at_press) measure.when = port(need(table, "when", "the bool that becomes true"));
         else if (const auto* node = table.get("when")) measure.when = port(*node);
-        if (const auto* node = table.get("unit")) measure.unit = word(*node);
+        if (const auto* node = table.get("unit")) {
+            measure.unit = word(*node);
+            try {
+                parse_unit(measure.unit);
+            } catch (const Error& error) {
+                fail(*node, error.message());
+            }
+        }
         if (const auto* node = table.get("log")) measure.is_log = flag(*node);
         if (const auto* node = table.get("scale")) measure.scale = number(*node, -1e9, 1e9);
         return measure;
@@ -496,6 +506,10 @@ double Stimulus::presentable(double level) const {
     if (!(step > 0.0)) return level;
     // Whole steps within the range, so that the same text gives the same bits.
     return std::clamp(std::round(level / step), std::ceil(min / step - 1e-9), std::floor(max / step + 1e-9)) * step;
+}
+bool Stimulus::is_rendered(double wanted, double got) const {
+    const double floor = is_log ? 0.0 : 0.05 * std::max(std::abs(min), std::abs(max));
+    return std::abs(got - wanted) <= tolerance * std::max(std::abs(wanted), floor);
 }
 double Stimulus::level_at(double at) const { return is_log ? std::pow(10.0, at) : at; }
 

@@ -63,6 +63,8 @@ struct Stimulus {
 
     /// The nearest level that can be presented.
     double presentable(double level) const;
+    /// Whether a commanded level is the wanted one within the tolerance; near 0 within that of a twentieth of the range.
+    bool is_rendered(double wanted, double got) const;
     std::string level_unit() const { return is_relative ? std::string() : unit; }
     double axis(double level) const;  ///< level → what rules and fits use
     double level_at(double axis) const;  ///< and back

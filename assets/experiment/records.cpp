@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <limits>
 
 namespace tactus::experiment {
@@ -110,12 +111,22 @@ ExperimentFile load_experiment_file(const fs::path& path) {
         ExperimentFile experiment;
         experiment.name = json["name"].get<std::string>();
         experiment.protocol = json["protocol"].get<std::string>();
-        for (const Json& one : json["files"])
+        for (const Json& one : json["files"]) {
             experiment.files.push_back({one["name"].get<std::string>(), one["hash"].get<std::string>()});
-        for (const Json& one : json["subjects"])
+            const fs::path name = experiment.files.back().name;
+            if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
+                throw Error(fmt::format("the file '{}' is outside of the folder", name.string()));
+        }
+        for (const Json& one : json["subjects"]) {
+            // A folder is named by it.
+            const std::string who = one["pseudonym"].get<std::string>();
+            if (who.empty() ||
+                !std::ranges::all_of(who, [](unsigned char c) { return c < 128 && std::isalnum(c) != 0; }))
+                throw Error(fmt::format("'{}' is no pseudonym of letters and digits", who));
             experiment.subjects.push_back({one["pseudonym"].get<std::string>(), one["row"].get<std::size_t>(),
                                            one["simulated"].get<bool>(), one["consent"].get<std::string>(),
                                            one["complete"].get<bool>(), one["registration"].get<std::string>()});
+        }
         for (const Json& one : json["freed_rows"]) experiment.freed_rows.push_back(one.get<std::size_t>());
         return experiment;
     } catch (const Error& error) {

@@ -92,7 +92,8 @@ std::string three_mf_of(std::span<const ColouredSurface> surfaces) {
             throw Error(fmt::format("the 3MF archive cannot be made: {}", words));
         }
         // Same input, same bytes.
-        zip_file_set_mtime(archive, static_cast<zip_uint64_t>(index), 315619200, 0);
+        zip_file_set_dostime(archive, static_cast<zip_uint64_t>(index), 0, 0x21,
+                             0);  // 1 January 1980 in every time zone
         zip_set_file_compression(archive, static_cast<zip_uint64_t>(index), ZIP_CM_DEFLATE, 3);
     };
     add("[Content_Types].xml", content_types);

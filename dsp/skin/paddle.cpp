@@ -20,6 +20,7 @@ namespace {
 constexpr double touching_gap = 0.3e-3;   // m above half of the thickness that counts as lying on bone
 constexpr double sample_spacing = 0.5e-3;  // m, of the points that measure coverage
 constexpr int max_samples_per_side = 400;
+constexpr double suture_slack = 1.5e-3, suture_stiffness = 50.0;  // m, N/m; assumed
 
 /// A frame from two axes of unit length that are perpendicular.
 Pose frame_of(const Vec3& origin, const Vec3& x, const Vec3& z) {
@@ -58,10 +59,20 @@ Defect defect_of(std::span<const Vec3> curve, const rope::Obstacle* bone) {
     Vec3 normal = twice / (2.0 * area);
     // Away from the bone: to the side on which it is farther.
     if (bone) {
-        Vec3 ignored;
-        const double step = std::sqrt(area);
-        if (bone->distance(centre - step * normal, ignored) > bone->distance(centre + step * normal, ignored))
-            normal = -normal;
+        // A distance field is flat beyond its grid, and the far side of the jaw may be near on the inside: only the slope at
+        // the curve, weighted by nearness, tells on which side the bone lies.
+        double outwards = 0.0;
+        bool is_seen = false;
+        for (const Vec3& p : curve) {
+            Vec3 away(0.0);
+            const double gap = bone->distance(p, away);
+            is_seen = is_seen || glm::dot(away, away) > 0.25;
+            outwards += glm::dot(away, normal) / (5e-3 + std::max(gap, 0.0));
+        }
+        if (!is_seen)
+            throw Error(
+                "no bone is near the curve of the defect, so its outer side is unknown; check the frame of the curve");
+        if (outwards < 0.0) normal = -normal;
     }
     // The long axis, from second moments of the curve in its plane.
     const Vec3 some = std::abs(normal.x) < 0.9 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
@@ -127,24 +138,29 @@ private:
     const rope::Obstacle* bone_;
 };
 
-/// Largest angle between the directions of a grid line half a thickness before and after a node that lies on bone.
+/// Largest angle between the directions of a grid line half a thickness before and half a thickness behind a node that lies on
+/// bone.
 double largest_fold(const Sheet& sheet, const std::vector<char>& touches) {
     const SheetSettings& s = sheet.settings();
     double worst = 0.0;
     const auto at = [&](int c, int r) { return sheet.positions()[static_cast<std::size_t>(sheet.index(c, r))]; };
-    const auto angle = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-        const Vec3 u = b - a, v = c - b;
+    const auto turn = [](const Vec3& u, const Vec3& v) {
         return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
     };
-    const int across = std::max(1, static_cast<int>(std::lround(0.5 * s.thickness * (s.columns - 1) / s.length))),
-              down = std::max(1, static_cast<int>(std::lround(0.5 * s.thickness * (s.rows - 1) / s.width)));
+    const auto half = [&](double side, int nodes) {
+        return std::clamp(static_cast<int>(std::lround(0.5 * s.thickness * (nodes - 1) / side)), 1,
+                          std::max(1, (nodes - 3) / 2));
+    };
+    const int across = half(s.length, s.columns), down = half(s.width, s.rows);
     for (int r = 0; r < s.rows; ++r)
         for (int c = 0; c < s.columns; ++c) {
             if (!touches[static_cast<std::size_t>(sheet.index(c, r))]) continue;
-            if (c >= across && c + across < s.columns)
-                worst = std::max(worst, angle(at(c - across, r), at(c, r), at(c + across, r)));
-            if (r >= down && r + down < s.rows)
-                worst = std::max(worst, angle(at(c, r - down), at(c, r), at(c, r + down)));
+            if (c > across && c + across + 1 < s.columns)
+                worst = std::max(worst, turn(at(c - across + 1, r) - at(c - across - 1, r),
+                                             at(c + across + 1, r) - at(c + across - 1, r)));
+            if (r > down && r + down + 1 < s.rows)
+                worst = std::max(
+                    worst, turn(at(c, r - down + 1) - at(c, r - down - 1), at(c, r + down + 1) - at(c, r + down - 1)));
         }
     return worst;
 }
@@ -249,6 +265,17 @@ DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruct
     SheetSettings sheet_settings = settings.sheet;
     sheet_settings.length = paddle.length;
     sheet_settings.width = paddle.width;
+    // As many nodes as it takes that bone of half a thickness does not pass between them, and a contact that yields by a
+    // twentieth of the thickness under the pressure on a node.
+    const double cell = std::max(0.5 * sheet_settings.thickness, 1e-3);
+    const auto nodes = [&](double side, int least) {
+        return std::clamp(static_cast<int>(std::ceil(side / cell)) + 1, least, 200);
+    };
+    sheet_settings.columns = nodes(paddle.length, sheet_settings.columns);
+    sheet_settings.rows = nodes(paddle.width, sheet_settings.rows);
+    const double on_node =
+        settings.pressure * paddle.length * paddle.width / ((sheet_settings.columns - 1) * (sheet_settings.rows - 1));
+    sheet_settings.contact = std::max(sheet_settings.contact, 20.0 * on_node / sheet_settings.thickness);
     // Either way round: that which stretches the perforators less, or leaves them shorter.
     const auto strain = [&](const Pose& pose) {
         std::array<double, 2> sums{};
@@ -259,8 +286,11 @@ DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruct
         }
         return sums;
     };
-    const Pose turned = defect.frame * Pose{Vec3(0.0), Quat(0.0, 0.0, 0.0, 1.0)};
-    Pose start = strain(turned) < strain(defect.frame) ? turned : defect.frame;
+    const double root = std::sqrt(0.5);
+    const Pose along =
+        paddle.width > paddle.length ? defect.frame * Pose{Vec3(0.0), Quat(root, 0.0, 0.0, root)} : defect.frame;
+    const Pose turned = along * Pose{Vec3(0.0), Quat(0.0, 0.0, 0.0, 1.0)};
+    Pose start = strain(turned) < strain(along) ? turned : along;
 
     for (PaddleRope& rope : draped.ropes) {
         rope.distance = glm::length(start.apply({rope.along, 0.0, 0.5 * sheet_settings.thickness}) - rope.bone);
@@ -288,6 +318,16 @@ DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruct
         tethers.push_back({sheet.index(std::clamp(column, 0, sheet_settings.columns - 1), sheet_settings.rows / 2),
                            rope.bone, settings.rope_length, settings.rope_stiffness});
     }
+    // Sutures: what lies on the curve is held there.
+    const Pose inward = start.inverse();
+    for (const Vec3& p : curve) {
+        const Vec3 at = inward.apply(p);
+        const double u = at.x / paddle.length + 0.5, v = at.y / paddle.width + 0.5;
+        if (!(u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0)) continue;
+        tethers.push_back({sheet.index(static_cast<int>(std::lround(u * (sheet_settings.columns - 1))),
+                                       static_cast<int>(std::lround(v * (sheet_settings.rows - 1)))),
+                           p + 0.5 * sheet_settings.thickness * draped.normal, suture_slack, suture_stiffness});
+    }
     SheetLoads loads;
     loads.pressure = -settings.pressure * draped.normal;
     loads.obstacle = &bed;
@@ -305,10 +345,13 @@ DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruct
     draped.coverage = coverage_of(defect, sheet);
     draped.area_flat = paddle.length * paddle.width;
     draped.area = sheet.area();
-    for (std::size_t n = 0; n < tethers.size(); ++n) {
+    for (std::size_t n = 0; n < draped.ropes.size(); ++n) {
         PaddleRope& rope = draped.ropes[n];
         rope.skin = sheet.positions()[static_cast<std::size_t>(tethers[n].node)];
         rope.tension = sheet.tension(tethers[n]);
+        if (rope.tension > 0.0) continue;  // it holds the skin back: how far it is too short was measured before
+        rope.distance = glm::length(rope.skin - rope.bone);
+        rope.slack = settings.rope_length - rope.distance;
     }
     draped.positions = sheet.positions();
     draped.columns = sheet_settings.columns;

@@ -20,7 +20,7 @@ struct DrapeSettings {
     SheetSettings sheet;           ///< its length and width are replaced by the paddle's
     double rope_length = 50e-3;    ///< m: a perforator from bone to skin (50 ± 18 mm, Heitmann 2003)
     double rope_stiffness = 38.0;  ///< N/m: 1.9 N per unit of strain (fibular artery, Kamenskiy 2024) over 50 mm
-    double pressure = 500.0;       ///< Pa, towards the defect: sutures and dressing; assumed
+    double pressure = 500.0;       ///< Pa, towards the defect: a dressing; assumed
     double fold_limit = 1.5707963267948966;  ///< rad over one thickness at the bone
 };
 
@@ -32,7 +32,7 @@ struct PaddleRope {
     Vec3 skin{0.0};        ///< m, frame of the jaw, after draping
     double distance =
         0.0;  ///< m, straight from bone to skin with the paddle over the defect: a lower bound of the path
-    double slack = 0.0;     ///< m: rope_length - distance; negative: it does not reach, and pulls the paddle off
+    double slack = 0.0;     ///< m: rope_length - distance; negative: it does not reach
     double tension = 0.0;   ///< N, after draping
 };
 
@@ -60,8 +60,8 @@ std::optional<std::size_t> segment_at(const reconstruction::FibulaInputs& inputs
 
 /// Lays the paddle over `defect`, a closed curve in the frame of the jaw (at least three points that span an area), with its
 /// long axis along the defect's, in the direction that stretches the perforators less. The sheet starts clear of the bone
-/// and settles under pressure on a bed through the curve and on `bone` (may be null). Perforators pull when they are
-/// stretched. Throws Error for a paddle or curve that cannot be laid.
+/// and settles under pressure on a bed through the curve and on `bone` (may be null), sutured along the curve. Perforators
+/// pull when they are stretched. Throws Error for a paddle or curve that cannot be laid.
 DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
                    const reconstruction::Flap& flap, std::span<const Vec3> defect, const rope::Obstacle* bone,
                    const DrapeSettings& settings = {});

@@ -134,7 +134,9 @@ private:
     /// Where a line through `point` enters bone, from 150 mm before it to 150 mm behind it.
     std::optional<Vec3> first_hit(const Vec3& point, const Vec3& along) const {
         constexpr double reach = 0.15;
-        for (double t = -reach; t < reach;) {
+        double t = -reach;
+        while (t < reach && d(point + along * t) < 0.0) t += step_;  // a line that begins in bone leaves it first
+        while (t < reach) {
             const double clear = d(point + along * t);
             if (clear < 0.0) return point + along * (t + clear);
             t += std::clamp(clear, 0.25 * step_, 5e-3);
@@ -331,11 +333,13 @@ std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, co
 double resting_clearance(const Grid& distance, const SawSite& site, double clearance, const SiteRequest& request) {
     constexpr double most = 60e-3, step = 1e-3;
     const double reach = 0.5 * request.blade_length + request.travel;
+    // The surface of the site itself is as near as the clearance says.
+    const double gap = std::min(request.min_gap, clearance - 0.1e-3);
     const auto is_clear = [&](double away) {
         for (const double height : {0.0, 0.5 * request.blade_height, request.blade_height})
             for (double t = -reach; t <= reach; t += 2.0 * step) {
                 const Vec3 at = site.point - site.feed * (away + height) + site.stroke * t;
-                if (value_at(distance, at, far) < request.min_gap) return false;
+                if (value_at(distance, at, far) < gap) return false;
             }
         return true;
     };

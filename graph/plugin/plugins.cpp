@@ -154,6 +154,8 @@ Plugin load(const fs::path& given) {
             check_declaration(*type);
         } catch (const std::exception& error) {
             throw Error(fmt::format("{}: node type '{}': {}", file.string(), type->name, error.what()));
+        } catch (...) {
+            throw Error(fmt::format("{}: node type '{}': its constructor throws", file.string(), type->name));
         }
     Hash hash;
     file::add_file(hash, file);

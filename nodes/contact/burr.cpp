@@ -98,7 +98,7 @@ struct Burr {
             last_state_ = now.state;
         }
         told_.add(bone.get(), pose.get(),
-                  {now.state, touches, now.load, now.lag, drive.rendered, 0.5 * diameter, seconds(tick.period)});
+                  {now.state, touches, now.load, now.lag, drive.rendered, 0.5 * diameter, drive.dt});
     }
 
     void report(Report& report) const { told_.tell(report, device_scale); }

@@ -138,8 +138,7 @@ struct SawBlade {
             if (now.state == saw::HoldState::releasing && now.count > 0) released_.tell();
             last_state_ = now.state;
         }
-        told_.add(bone.get(), pose.get(),
-                  {now.state, touches, now.thrust, now.lag, drive.rendered, 0.0, seconds(tick.period)});
+        told_.add(bone.get(), pose.get(), {now.state, touches, now.thrust, now.lag, drive.rendered, 0.0, drive.dt});
     }
 
     void report(Report& report) const { told_.tell(report, device_scale); }

@@ -20,7 +20,7 @@ public:
         double force = 0.0, lag = 0.0;  ///< N, m: counted while the tool touches; `force` as rendered
         double rendered = 1.0;  ///< fraction of the force that the device rendered
         double reach = 0.0;  ///< m from the pose to the tool's edge
-        double seconds = 0.0;  ///< of the tick
+        double seconds = 0.0;  ///< since the tick before, at most 50 ms
     };
 
     void add(const volume::BoneSnapshot& bone, const Pose& pose, const Now& now) noexcept {

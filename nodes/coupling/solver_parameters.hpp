@@ -43,8 +43,11 @@ struct SolverParameters {
     static void slow_down(coupling::QuasiStaticSettings& settings, const Pose& proxy, const Pose& hand,
                           double elapsed) noexcept {
         constexpr double force_rate = 100.0, torque_rate = 5.0;
-        settings.shift = settings.turn = std::numeric_limits<double>::infinity();
+        // Without a valid hand the body waits where it is: the springs keep pulling towards the last one.
+        settings.shift = settings.turn = 0.0;
         if (!is_valid(hand)) return;
+        settings.shift = settings.turn = std::numeric_limits<double>::infinity();
+        elapsed = std::min(elapsed, 0.02);  // a pause of the thread is no time in which a hand could follow
         const double linear = settings.springs.linear(proxy.position - hand.position).curvature;
         const double angular =
             settings.springs.angular(rotation_between(hand.orientation, proxy.orientation)).curvature;

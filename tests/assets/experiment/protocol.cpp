@@ -125,6 +125,8 @@ TEST_CASE("errors of a protocol have their line and what to do") {
     fails("some.toml", "none.toml", "there is no file");
     fails("format = 1", "format = 2", "reads format 1");
     fails("order  = \"latin_square\"", "order  = \"co_location\"", "four conditions and three tasks");
+    fails("port = \"a.out\"", "port = \"a.out\", unit = \"furlong\"", "furlong");
+    fails("min = 0.01\nmax = 1", "min = 0.11\nmax = 0.19\nstep = 0.1", "no multiple of the step");
     fails("[response]", "[[task]]\nname = \"x\"\n[response]", "either [[task]] or");
     CHECK(error_of(folder, "") != "none");
     CHECK(error_of(folder, good + "[[comparison]]\nfactor = \"size\"\na = \"small\"\nb = \"small\"\n")
@@ -218,6 +220,34 @@ TEST_CASE("trials survive writing to the bit, with nothing to measure too") {
     CHECK(load_trials(folder.path / "none").empty());
     std::ofstream(folder.path / "trials.jsonl", std::ios::app) << "{\"number\": 4}\n";
     CHECK_THROWS_WITH(load_trials(folder.path / "trials.jsonl"), Catch::Matchers::ContainsSubstring("trials.jsonl:3"));
+}
+
+TEST_CASE("a level near zero is held to a part of the range") {
+    Stimulus stimulus;
+    stimulus.min = -0.5;
+    stimulus.max = 0.5;
+    stimulus.tolerance = 0.1;
+    stimulus.is_log = false;
+    CHECK(stimulus.is_rendered(0.0, 2.2e-16));
+    CHECK_FALSE(stimulus.is_rendered(0.0, 0.01));
+    CHECK(stimulus.is_rendered(0.5, 0.46));
+    CHECK_FALSE(stimulus.is_rendered(0.5, 0.44));
+}
+
+TEST_CASE("a folder of an experiment whose names lead out of it is refused") {
+    const Folder folder;
+    ExperimentFile file;
+    file.name = "try";
+    file.subjects.push_back({});
+    file.subjects.back().pseudonym = "../victim";
+    save_experiment_file(file, folder.path / "experiment.json");
+    CHECK_THROWS_WITH(load_experiment_file(folder.path / "experiment.json"),
+                      Catch::Matchers::ContainsSubstring("is no pseudonym"));
+    file.subjects.back().pseudonym = "P01";
+    file.files.push_back({"../../etc/x", "0"});
+    save_experiment_file(file, folder.path / "experiment.json");
+    CHECK_THROWS_WITH(load_experiment_file(folder.path / "experiment.json"),
+                      Catch::Matchers::ContainsSubstring("outside of the folder"));
 }
 
 TEST_CASE("a record whose folder leads elsewhere is refused") {

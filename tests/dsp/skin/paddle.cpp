@@ -87,17 +87,16 @@ TEST_CASE("the slack of a perforator is its length less the distance from its bo
     CHECK(rope.tension == 0.0);
 }
 
-TEST_CASE("a perforator that does not reach pulls the paddle off the defect") {
+TEST_CASE("a perforator that does not reach pulls at the paddle, which is sutured to the defect") {
     PaddleCase made;
     const std::vector<Vec3> far = ellipse(15 * milli, 10 * milli, 0.0, {-20 * milli, -110 * milli, 0.0});
     const DrapedPaddle pulled = made.drape(far);
     REQUIRE(pulled.ropes.size() == 1);
     const skin::PaddleRope& rope = pulled.ropes[0];
     CHECK(rope.slack < -10 * milli);
-    // Nothing but the rope holds the sheet on its bed: it comes to rest where the rope no longer pulls.
-    CHECK(glm::length(rope.skin - rope.bone) < 51 * milli);
-    CHECK(rope.tension < 0.05);
-    CHECK(pulled.coverage < 0.5);
+    CHECK(rope.tension > 0.3);
+    CHECK(rope.tension ==
+          Approx(made.settings.rope_stiffness * (glm::length(rope.skin - rope.bone) - made.settings.rope_length)));
     made.flap.perforators.clear();
     CHECK(made.drape(far).coverage == 1.0);
 }
@@ -120,8 +119,8 @@ TEST_CASE("the paddle lies on bone that stands out of the defect, and the fold o
         CHECK(draped->fold < 1.5);
     }
     for (const Vec3& p : over_round.positions) CHECK(std::hypot(p.x, p.z) > 12 * milli - 0.3 * milli);
-    // On a circle the directions half a thickness apart turn by thickness / (2 R) twice over; spacing of nodes rounds it.
-    CHECK(over_round.fold < over_thin.fold * 3.0);
+    // On a circle of R + t/2 the direction turns by t / (R + t/2) over one thickness; nodes are 2 to 3.3 mm apart.
+    CHECK(over_round.fold == Approx(4.0 / 12.0).epsilon(0.35));
 }
 
 TEST_CASE("the paddle lies on the side of the defect that is away from the bone, whichever way the curve runs") {
@@ -135,6 +134,49 @@ TEST_CASE("the paddle lies on the side of the defect that is away from the bone,
     CHECK(one.normal.z == Approx(1.0));
     CHECK(other.normal.z == Approx(1.0));
     CHECK(one.coverage == Approx(other.coverage).margin(1e-3));
+}
+
+TEST_CASE("a bone whose distance is known only nearby has the paddle on its outer side, and one far away is refused") {
+    /// As a distance field: flat beyond 20 mm.
+    struct Field final : rope::Obstacle {
+        rope::Ball ball{{0.0, 0.0, -20 * milli}, 18 * milli};
+        double distance(const Vec3& place, Vec3& normal) const noexcept override {
+            const double d = ball.distance(place, normal);
+            if (d < 20 * milli) return d;
+            normal = Vec3(0.0);
+            return 20 * milli;
+        }
+    };
+    PaddleCase made;
+    made.flap.perforators.clear();
+    const Field bone;
+    std::vector<Vec3> curve = ellipse(20 * milli, 12 * milli, 0.0);
+    const DrapedPaddle one = made.drape(curve, &bone);
+    std::ranges::reverse(curve);
+    const DrapedPaddle other = made.drape(curve, &bone);
+    CHECK(one.normal.z == Approx(1.0));
+    CHECK(other.normal.z == Approx(1.0));
+    CHECK_THROWS_WITH(made.drape(ellipse(20 * milli, 12 * milli, 300 * milli), &bone),
+                      Catch::Matchers::ContainsSubstring("no bone is near"));
+}
+
+TEST_CASE("a paddle that is wider than long lies with its width along the defect") {
+    PaddleCase made;
+    made.flap.perforators.clear();
+    made.flap.paddle->length = 30 * milli;
+    made.flap.paddle->width = 60 * milli;
+    CHECK(made.drape(ellipse(28 * milli, 12 * milli, 0.0)).coverage > 0.99);
+}
+
+TEST_CASE("bone does not pass between the nodes of a large or heavily pressed paddle") {
+    PaddleCase made;
+    made.flap.perforators.clear();
+    made.flap.paddle->length = 200 * milli;
+    made.flap.paddle->width = 80 * milli;
+    made.settings.pressure = 5000.0;
+    const rope::Cylinder ridge({0.0, 0.0, -2 * milli}, {0.0, 1.0, 0.0}, 6 * milli);
+    for (const Vec3& p : made.drape(ellipse(60 * milli, 30 * milli, 0.0), &ridge).positions)
+        REQUIRE(std::hypot(p.x, p.z + 2 * milli) > (6.0 + 0.6 * 5.0) * milli);
 }
 
 TEST_CASE("the shell of a draped paddle is closed, has its volume, and faces outwards") {

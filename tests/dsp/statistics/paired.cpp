@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
+#include "dsp/statistics/distributions.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -47,6 +48,26 @@ TEST_CASE("a paired t test repeats the sleep data of Student") {
     CHECK(test.low == Approx(0.7001142).epsilon(1e-6));
     CHECK(test.high == Approx(2.4598858).epsilon(1e-6));
     CHECK(test.freedom == 9.0);
+}
+
+TEST_CASE("differences that are equal but for rounding are not tested") {
+    for (const double value : {0.1, 0.3, -7.7, 1e9 / 3.0})
+        for (std::size_t n = 3; n <= 16; ++n) {
+            CAPTURE(value, n);
+            CHECK_THROWS_AS(paired_t(std::vector<double>(n, value)), Error);
+        }
+}
+
+TEST_CASE("the ends of a standardised interval leave the stated tails, also for large effects") {
+    for (const std::vector<double>& d :
+         {std::vector{1.0, 1.01, 0.99, 1.02}, std::vector{-3.0, -3.02, -3.01, -2.98, -3.0, -3.03},
+          std::vector{0.3, -0.2, 0.5, 0.1, 0.0}}) {
+        const Moments of = moments(d);
+        const double root = std::sqrt(static_cast<double>(d.size())), t = root * of.mean / of.deviation;
+        const auto [low, high] = standardised_interval(d, 0.9);
+        CHECK(noncentral_student_cdf(t, static_cast<double>(d.size()) - 1.0, low * root) == Approx(0.95).margin(1e-4));
+        CHECK(noncentral_student_cdf(t, static_cast<double>(d.size()) - 1.0, high * root) == Approx(0.05).margin(1e-4));
+    }
 }
 
 TEST_CASE("tests of differences refuse what they cannot test") {

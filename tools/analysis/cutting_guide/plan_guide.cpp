@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/cutting_guide/plan_guide.hpp"
 
+#include "tools/analysis/plan/case_warnings.hpp"
+
 #include "assets/mesh/mesh.hpp"
 #include "devices/display/outline_font.hpp"
 #include "dsp/core/constants.hpp"
@@ -306,6 +308,8 @@ void refuse(const PlannedGuide& guide, const mesh::MeshTopology& topology) {
         if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
             throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan", guide.made.slots[n].cut.letter,
                                     fit.offset / mm, fit.angle / degree));
+        if (guide.made.slots[n].sides != cutting_guide::Sides::one && !(fit.width > 0.0))
+            throw Error(fmt::format("slot {} lacks its second wall", guide.made.slots[n].cut.letter));
         if (fit.width > 0.0 && std::abs(fit.width - guide.made.slots[n].width) > 0.05 * mm)
             throw Error(fmt::format("slot {} is {:.2f} mm wide instead of {:.2f} mm", guide.made.slots[n].cut.letter,
                                     fit.width / mm, guide.made.slots[n].width / mm));
@@ -364,6 +368,21 @@ PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const 
     refuse(guide, topology);
     for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
     warn_clinically(guide, study, choice);
+    const reconstruction::FibulaPlan placed = study.placed_plan();
+    for (std::size_t n = 0; n < placed.segments.size(); ++n) {
+        const Pose &now = placed.segments[n].donor_to_target, &planned = study.fibula().segments[n].donor_to_target;
+        const Vec3 middle = planned.inverse().apply(study.inputs().planes[n].origin);
+        if (glm::length(now.apply(middle) - planned.apply(middle)) > max_away ||
+            glm::length(glm::cross(now.orientation * Vec3(1.0, 0.0, 0.0), planned.orientation * Vec3(1.0, 0.0, 0.0))) >
+                max_turned ||
+            glm::length(glm::cross(now.orientation * Vec3(0.0, 0.0, 1.0), planned.orientation * Vec3(0.0, 0.0, 1.0))) >
+                max_turned)
+            guide.warnings.push_back(
+                {"moved",
+                 fmt::format("segment {} is not at its planned place: the guide, its cuts and the holes for its screws "
+                             "are those of the plan",
+                             n + 1)});
+    }
     return guide;
 }
 

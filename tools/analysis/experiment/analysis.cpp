@@ -131,10 +131,12 @@ void analyse_tasks(const Protocol& protocol, AnalysedSubject& subject) {
 
 std::string exclusion_of(const Protocol& protocol, const AnalysedSubject& subject) {
     if (!subject.entry.is_complete) return "the session is not complete";
+    if (subject.trials == 0) return "there are no trials";
     const experiment::Limits& limits = protocol.limits;
-    if (subject.catch_trials > 0 && subject.catch_correct < limits.min_catch * subject.catch_trials)
+    // Beyond the rounding of the product: 55 of 100 are enough for 0.55.
+    if (subject.catch_trials > 0 && subject.catch_correct < limits.min_catch * subject.catch_trials - 1e-9)
         return fmt::format("{} of {} catch trials were correct", subject.catch_correct, subject.catch_trials);
-    if (subject.trials > 0 && subject.marked > limits.max_marked * subject.trials)
+    if (subject.trials > 0 && subject.marked > limits.max_marked * subject.trials + 1e-9)
         return fmt::format("{} of {} trials were marked", subject.marked, subject.trials);
     return {};
 }
@@ -246,8 +248,10 @@ AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment:
         return result;
     }
     const auto seconds = std::ranges::count(b_second, true);
-    if (is_crossed && n >= 4 && seconds >= 2 && n - static_cast<std::size_t>(seconds) >= 2)
-        result.cross_over = statistics::cross_over(result.differences, b_second);
+    if (is_crossed && n >= 4 && seconds >= 2 && n - static_cast<std::size_t>(seconds) >= 2) try {
+            result.cross_over = statistics::cross_over(result.differences, b_second);
+        } catch (const Error&) {  // equal differences within both orders: no period effect is stated
+        }
     return result;
 }
 
@@ -326,12 +330,13 @@ ExperimentAnalysis analyse_experiment(const fs::path& folder, const AnalysisSett
     std::vector<double> p;
     for (const experiment::Comparison& comparison : protocol.comparisons) {
         analysis.comparisons.push_back(compare(analysis, comparison));
-        if (const auto& test = analysis.comparisons.back().test) p.push_back(test->p);
+        // What cannot be tested counts as a comparison without effect, so that the others do not gain by it.
+        const auto& test = analysis.comparisons.back().test;
+        p.push_back(test ? test->p : 1.0);
     }
     const std::vector<double> adjusted = statistics::holm(p);
-    std::size_t next = 0;
-    for (AnalysedComparison& comparison : analysis.comparisons)
-        if (comparison.test) comparison.adjusted_p = adjusted[next++];
+    for (std::size_t n = 0; n < adjusted.size(); ++n)
+        if (analysis.comparisons[n].test) analysis.comparisons[n].adjusted_p = adjusted[n];
     return analysis;
 }
 
@@ -346,7 +351,16 @@ TakeCheck check_takes(const fs::path& folder) {
             if (!fs::exists(take / "take.json")) continue;
             ++check.trials;
             std::size_t task = 0;
-            while (!protocol.tasks.empty() && protocol.tasks[task].name != trial.task) ++task;
+            while (task < protocol.tasks.size() && protocol.tasks[task].name != trial.task) ++task;
+            const bool is_known = protocol.is_psychophysics()
+                                      ? trial.rendered.size() <= protocol.stimulus->windows.size()
+                                      : task < protocol.tasks.size();
+            if (!is_known) {
+                check.differences.push_back(
+                    fmt::format("{} trial {}: is not of this protocol", entry.pseudonym, trial.number));
+                continue;
+            }
+            if (protocol.is_psychophysics()) task = 0;
             const PortValues values = port_values_of(take, ports_of(protocol, task));
             const auto expect = [&](const std::string& name, double before, double now) {
                 ++check.values;

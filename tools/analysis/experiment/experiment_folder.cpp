@@ -4,6 +4,8 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
+#include "graph/patch/patch.hpp"
+#include "graph/patch/sub_patch.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -33,11 +35,30 @@ std::string hash_of(const fs::path& file) {
     return fmt::format("{:016x}", hash.value());
 }
 
-/// Relative to the folder of the protocol; files elsewhere keep their names.
-std::string frozen_file_name(const Protocol& protocol, const fs::path& file) {
-    const fs::path relative = file.lexically_relative(protocol.file.parent_path());
-    const bool leads_out = relative.empty() || *relative.begin() == "..";
-    return (leads_out ? fs::path("elsewhere") / file.filename() : relative).string();
+/// The protocol first, then all that it names, and the patches within those patches.
+std::vector<fs::path> used_files(const Protocol& protocol) {
+    std::vector<fs::path> all = protocol.files();
+    const auto add = [&](const fs::path& patch_file) {
+        if (patch_file.empty()) return;
+        patch::Problems problems;
+        patch::Patch loaded = patch::load_patch(patch_file, problems);
+        patch::read_parts(loaded);
+        for (const fs::path& part : patch::part_files(loaded)) {
+            const fs::path file = fs::absolute(part).lexically_normal();
+            if (std::ranges::find(all, file) == all.end()) all.push_back(file);
+        }
+    };
+    add(protocol.patch);
+    for (const experiment::Task& task : protocol.tasks) add(task.patch);
+    return all;
+}
+
+/// Relative to the lowest folder that holds all files: their copies name each other as the files do.
+std::string frozen_file_name(const Protocol& protocol, const std::vector<fs::path>& files, const fs::path& file) {
+    fs::path root = protocol.file.parent_path();
+    for (const fs::path& one : files)
+        while (root.has_relative_path() && *one.lexically_relative(root).begin() == "..") root = root.parent_path();
+    return file.lexically_relative(root).string();
 }
 
 /// "line 12: 'min = 0.02' is now 'min = 0.05'"; the first difference.
@@ -76,10 +97,14 @@ ExperimentFolder::ExperimentFolder(const fs::path& folder, const Protocol& proto
                 throw Error(fmt::format("{}: holds the data of the experiment '{}'; choose another folder by --out",
                                         folder_.string(), file_.name));
         } else {
-            for (const auto& entry : fs::directory_iterator(folder_))
+            for (const auto& entry : fs::directory_iterator(folder_)) {
+                // Left by a run that was killed before it had written its state.
+                if (entry.path().filename() == frozen_name || entry.path().filename().string().starts_with(state_name))
+                    continue;
                 throw Error(
                     fmt::format("{}: is no folder of an experiment, but holds '{}'; choose another one by --out",
                                 folder_.string(), entry.path().filename().string()));
+            }
         }
         if (file_.subjects.empty()) freeze(protocol);
         else check_frozen(protocol);
@@ -116,8 +141,9 @@ void ExperimentFolder::freeze(const Protocol& protocol) {
     file_.name = protocol.name;
     file_.protocol = protocol.file.string();
     file_.files.clear();
-    for (const fs::path& file : protocol.files()) {
-        const std::string name = frozen_file_name(protocol, file);
+    const std::vector<fs::path> files = used_files(protocol);
+    for (const fs::path& file : files) {
+        const std::string name = frozen_file_name(protocol, files, file);
         const fs::path copy = folder_ / frozen_name / name;
         std::error_code failure;
         fs::create_directories(copy.parent_path(), failure);
@@ -130,7 +156,8 @@ void ExperimentFolder::freeze(const Protocol& protocol) {
 
 void ExperimentFolder::check_frozen(const Protocol& protocol) const {
     std::vector<FrozenFile> now;
-    for (const fs::path& file : protocol.files()) now.push_back({frozen_file_name(protocol, file), hash_of(file)});
+    const std::vector<fs::path> files = used_files(protocol);
+    for (const fs::path& file : files) now.push_back({frozen_file_name(protocol, files, file), hash_of(file)});
     const auto refuse = [&](const std::string& why) {
         throw Error(
             fmt::format("{}: the protocol must not change after the first subject: {}; restore the file, or begin "
@@ -142,7 +169,7 @@ void ExperimentFolder::check_frozen(const Protocol& protocol) const {
         if (found == now.end()) refuse(fmt::format("it no longer names {}", before.name));
         if (found->hash == before.hash) continue;
         const std::size_t index = static_cast<std::size_t>(found - now.begin());
-        const fs::path current = protocol.files()[index];
+        const fs::path& current = files[index];
         refuse(fmt::format("{}, {}", before.name,
                            first_difference(file::read_whole_file(folder_ / frozen_name / before.name),
                                             file::read_whole_file(current))));

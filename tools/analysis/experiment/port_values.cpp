@@ -189,6 +189,19 @@ std::set<std::string> ports_of(const experiment::Protocol& protocol, std::size_t
     return ports;
 }
 
+void check_ports(const compile::Schedule& schedule, const std::set<std::string>& ports) {
+    for (const std::string& name : ports) {
+        const std::string port = port_and_channel(name).first;
+        const ValueType* type = nullptr;
+        for (const compile::ScheduleNode& node : schedule.nodes)
+            for (const compile::ScheduleOutput& output : node.outputs)
+                if (node.name + "." + output.name == port) type = output.port->type;
+        if (!type) throw Error(fmt::format("the patch has no output '{}'", port));
+        if (!is_plain(*type)) throw Error(fmt::format("'{}' is a {}: a measure needs numbers", port, type->name));
+        (void)channel_index(name, take::channels_of(*type));
+    }
+}
+
 PortCollector::PortCollector(const std::set<std::string>& ports, std::string done) : done_(std::move(done)) {
     for (const std::string& port : ports) entries_.emplace(port, Entry{});
 }

@@ -5,6 +5,7 @@
 
 #include "assets/experiment/protocol.hpp"
 #include "engine/run/options.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -27,6 +28,9 @@ using PortValues = std::map<std::string, PortSeries>;
 
 /// Ports that a protocol's measures and answers need; `task` is ignored in psychophysics.
 std::set<std::string> ports_of(const experiment::Protocol& protocol, std::size_t task);
+
+/// Throws Error naming a port that the patch does not have or that carries no numbers, or a channel that a port does not have.
+void check_ports(const compile::Schedule& schedule, const std::set<std::string>& ports);
 
 class PortCollector {
 public:

@@ -136,6 +136,8 @@ public:
     ExperimentEnd run() {
         ExperimentEnd end;
         end.protocol_hash = folder_.protocol_hash();
+        // Before a row of the order is given away: a model may not suit the protocol.
+        if (choice_.model) simulated_.emplace(*choice_.model, protocol_, choice_.subject);
         entry_ = folder_.enrol(choice_.subject, choice_.model.has_value());
         home_ = folder_.subject_folder(choice_.subject);
         std::error_code failure;
@@ -144,7 +146,6 @@ public:
         trials_ = experiment::load_trials(home_ / trials_name);
         end.resumed = static_cast<int>(trials_.size());
         SubjectSession session(protocol_, entry_.row, trials_);
-        if (choice_.model) simulated_.emplace(*choice_.model, protocol_, choice_.subject);
         if (session.next() && prepare(end.resumed > 0)) {
             while (const std::optional<TrialSpec> spec = session.next()) {
                 if (stop_) break;
@@ -191,7 +192,7 @@ private:
         if (is_rehearsal())
             hooks_.say(
                 "This is a rehearsal: no haptic device is chosen, or the registration is not given. The analysis "
-                "tests nothing from it.\n");
+                "tests neither mode nor display from it.\n");
         return protocol_.welcome.empty() || is_resumed || hooks_.confirm(protocol_.welcome, 0);
     }
 
@@ -203,7 +204,11 @@ private:
             const std::size_t at = setting.find(".device=");
             if (at == std::string::npos) continue;
             const std::string device = setting.substr(at + 8);
-            return device == "mouse" || device == "gamepad" || device == "space_mouse" || device == "simulated";
+            // Drivers that give a hand no force, or move it themselves.
+            for (const char* other : {"mouse", "gamepad", "space_mouse", "simulated", "scripted", "replay",
+                                      "openigtlink", "wqsm_gripper", "twum_gripper"})
+                if (device == other) return true;
+            return false;
         }
         return true;
     }
@@ -260,7 +265,8 @@ private:
         run.tap = collector.tap();
         const std::size_t losses = end.losses.size();
         perform(spec, run, collector, record, end);
-        if (stop_) return std::nullopt;
+        // A trial that was cut short, by Ctrl-C or by closing the window, is not kept.
+        if (stop_ || (!simulated_ && !collector.over() && record.seconds < 0.99 * *run.seconds)) return std::nullopt;
         const PortValues values = collector.values();
         if (protocol_.is_psychophysics()) {
             if (!answer(spec, values, record)) return std::nullopt;
@@ -284,8 +290,7 @@ private:
         if (!protocol_.is_psychophysics() || record.interval == 0) return {};
         const std::string unit = protocol_.stimulus->level_unit();
         if (!record.rendered_level) return "an interval has nothing that can be measured";
-        if (std::abs(*record.rendered_level - record.level) <= protocol_.stimulus->tolerance * std::abs(record.level))
-            return {};
+        if (protocol_.stimulus->is_rendered(record.level, *record.rendered_level)) return {};
         return fmt::format("the device was commanded level {}", format_quantity(*record.rendered_level, unit));
     }
 
@@ -387,7 +392,7 @@ void check_levels(const Protocol& protocol, compile::AssetCache& assets, const s
                 const std::string where =
                     fmt::format("condition {}, interval {}, level {}", protocol.conditions[condition].name, interval,
                                 format_quantity(level, stimulus.level_unit()));
-                if (!got || !(std::abs(*got - level) <= stimulus.tolerance * std::abs(level)))
+                if (!got || !stimulus.is_rendered(level, *got))
                     throw Error(fmt::format(
                         "{}: {}: the device is commanded {}, which misses the level by more than {:.3g} %; "
                         "change the range of levels or the patch",
@@ -411,7 +416,7 @@ void check_tasks(const Protocol& protocol, compile::AssetCache& assets, const st
             run.overrides.settings.insert(run.overrides.settings.end(), more.begin(), more.end());
             if (!protocol.tasks[task].ideal.empty())
                 run.overrides.assets.push_back("hand=" + protocol.tasks[task].ideal.string());
-            run::load_plan(run, assets);
+            check_ports(run::load_plan(run, assets), ports_of(protocol, task));
         }
 }
 

@@ -22,6 +22,26 @@ constexpr double behind_border = 20e-3;  // m
 constexpr double enough_coverage = 0.99;
 const Vec3 posterior(0.0, 1.0, 0.0);  // LPS
 
+/// A closed curve through control points as 3D Slicer draws it (Catmull-Rom), eight pieces between two of them: a polygon
+/// through few points would have a smaller area.
+std::vector<Vec3> through(const std::vector<markup::ControlPoint>& points) {
+    std::vector<Vec3> curve;
+    const std::size_t n = points.size();
+    const auto at = [&](std::size_t i) { return points[i % n].position; };
+    if (n < 3) {
+        for (const markup::ControlPoint& p : points) curve.push_back(p.position);
+        return curve;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+        for (int k = 0; k < 8; ++k) {
+            const Vec3 a = at(i + n - 1), b = at(i), c = at(i + 1), d = at(i + 2);
+            const double t = k / 8.0;
+            curve.push_back(0.5 * (2.0 * b + (c - a) * t + (2.0 * a - 5.0 * b + 4.0 * c - d) * t * t +
+                                   (3.0 * b - a - 3.0 * c + d) * t * t * t));
+        }
+    return curve;
+}
+
 }  // namespace
 
 Vec3 default_paddle_place(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
@@ -57,8 +77,7 @@ PaddleStudy study_paddle(FlapStudy& study, const std::filesystem::path& defect, 
     found.settings = settings;
     markup::ReadPoints read = markup::read_points(defect);
     found.notes = std::move(read.notes);
-    std::vector<Vec3> curve;
-    for (const markup::ControlPoint& p : read.points) curve.push_back(p.position);
+    const std::vector<Vec3> curve = through(read.points);
     const reconstruction::FlapObstacle bone = study.bone();
     found.draped = skin::drape(study.inputs(), study.placed_plan(), study.flap(), curve, &bone, settings);
     const skin::DrapedPaddle& d = found.draped;

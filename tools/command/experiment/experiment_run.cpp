@@ -76,6 +76,13 @@ public:
             viewed.view.wanted = true;
             if (!condition.display.empty()) viewed.view.sight.display = run::find_display(condition.display);
             viewed.view.sight.offset = condition.offset;
+            // The window waits for `over` alone.
+            const std::jthread forward([&](const std::stop_token& end) {
+                while (!end.stop_requested()) {
+                    if (stop_) over = true;
+                    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                }
+            });
             if (window::view_run(viewed, over) == output_lost) end.losses.emplace_back("files of the run were lost");
             end.summary = file::read_whole_file(choice.out / "summary.json");
             return end;

@@ -32,6 +32,8 @@ struct GuideOptions : PlanChoice {
 analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy& study) {
     analysis::GuideChoice choice;
     choice.bone = o.bone == "jaw" ? analysis::GuideBone::jaw : analysis::GuideBone::fibula;
+    if (o.cut > 0 && choice.bone != analysis::GuideBone::jaw)
+        throw Error("--cut chooses one of the two cuts of the jaw; give --bone jaw");
     choice.cut = o.cut;
     choice.label = o.label;
     choice.turn = o.turn * degree;

@@ -112,7 +112,8 @@ void print(const analysis::PaddleStudy& found, const reconstruction::SkinPaddle&
 int paddle(const PaddleChoice& choice) {
     if (choice.defect.empty() && (!choice.out.empty() || !choice.picture.empty()))
         throw Error("-o and --picture show the draped paddle; give --defect CURVE.mrk.json, too");
-    if (choice.remove && !choice.defect.empty()) throw Error("--remove and --defect exclude each other");
+    if (choice.remove && (!choice.defect.empty() || !choice.at.empty() || choice.length || choice.width))
+        throw Error("--remove excludes --defect, --at, --length and --width");
     place(choice);
     if (choice.defect.empty()) return show_change(choice);
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);

@@ -300,6 +300,24 @@ TEST_CASE("a protocol that changed after the first subject is refused with what 
                       Catch::Matchers::ContainsSubstring("patches/stiffness-pair.toml, line"));
 }
 
+TEST_CASE("a protocol may name files above its own folder, and its data can be analysed", "[slow]") {
+    const run::ScratchFolder scratch;
+    const std::atomic<bool> never{false};
+    ExperimentChoice choice = simulated_choice(scratch.path(), "P01");
+    const fs::path below = scratch.path() / "files/protocols";
+    fs::create_directories(below);
+    std::string text = file::read_whole_file(scratch.path() / "files/stiffness.toml");
+    const std::string patch = "patches/stiffness-pair.toml";
+    text.replace(text.find(patch), patch.size(), "../" + patch);
+    std::ofstream(below / "stiffness.toml") << text;
+    choice.protocol = experiment::load_protocol(below / "stiffness.toml");
+    run_experiment(choice, silent(), never);
+    CHECK(analyse_experiment(choice.out, {}).subjects.size() == 1);
+    choice.subject = "P02";
+    run_experiment(choice, silent(), never);
+    CHECK(analyse_experiment(choice.out, {}).included == 2);
+}
+
 TEST_CASE("a subject who withdraws leaves nothing, and the next one inherits the row") {
     const run::ScratchFolder scratch;
     const experiment::Protocol protocol = short_protocol(scratch.path() / "files");
