@@ -77,8 +77,8 @@ public:
             if (!condition.display.empty()) viewed.view.sight.display = run::find_display(condition.display);
             viewed.view.sight.offset = condition.offset;
             // The window waits for `over` alone.
-            const std::jthread forward([&](const std::stop_token& end) {
-                while (!end.stop_requested()) {
+            const std::jthread forward([&](const std::stop_token& stopping) {
+                while (!stopping.stop_requested()) {
                     if (stop_) over = true;
                     std::this_thread::sleep_for(std::chrono::milliseconds(20));
                 }
