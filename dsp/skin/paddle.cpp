@@ -43,7 +43,8 @@ struct Defect {
     }
 };
 
-Defect defect_of(std::span<const Vec3> curve, const rope::Obstacle* bone) {
+/// `jaw`: somewhere on the planned bone, for a curve that lies far from it.
+Defect defect_of(std::span<const Vec3> curve, const rope::Obstacle* bone, const Vec3& jaw) {
     if (curve.size() < 3)
         throw Error(fmt::format("the curve of the defect has {} points; it needs three", curve.size()));
     Vec3 centre(0.0);
@@ -69,9 +70,7 @@ Defect defect_of(std::span<const Vec3> curve, const rope::Obstacle* bone) {
             is_seen = is_seen || glm::dot(away, away) > 0.25;
             outwards += glm::dot(away, normal) / (5e-3 + std::max(gap, 0.0));
         }
-        if (!is_seen)
-            throw Error(
-                "no bone is near the curve of the defect, so its outer side is unknown; check the frame of the curve");
+        if (!is_seen) outwards = glm::dot(centre - jaw, normal);
         if (outwards < 0.0) normal = -normal;
     }
     // The long axis, from second moments of the curve in its plane.
@@ -243,7 +242,10 @@ DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruct
     if (!flap.paddle) throw Error("the plan has no skin paddle");
     const reconstruction::SkinPaddle& paddle = *flap.paddle;
     const Pose leg = paddle_in_leg(paddle, inputs);
-    const Defect defect = defect_of(curve, bone);
+    Vec3 jaw(0.0);
+    for (const reconstruction::JawPlane& plane : inputs.planes)
+        jaw += plane.origin / static_cast<double>(inputs.planes.size());
+    const Defect defect = defect_of(curve, bone, jaw);
     DrapedPaddle draped;
     draped.defect_area = defect.area;
     draped.normal = defect.frame.rotate({0.0, 0.0, 1.0});
@@ -324,9 +326,13 @@ DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruct
         const Vec3 at = inward.apply(p);
         const double u = at.x / paddle.length + 0.5, v = at.y / paddle.width + 0.5;
         if (!(u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0)) continue;
+        // A curve that runs through bone must not pull the skin into it.
+        const Vec3 target = p + 0.5 * sheet_settings.thickness * draped.normal;
+        Vec3 ignored;
+        if (bone && bone->distance(target, ignored) < 0.5 * sheet_settings.thickness) continue;
         tethers.push_back({sheet.index(static_cast<int>(std::lround(u * (sheet_settings.columns - 1))),
                                        static_cast<int>(std::lround(v * (sheet_settings.rows - 1)))),
-                           p + 0.5 * sheet_settings.thickness * draped.normal, suture_slack, suture_stiffness});
+                           target, suture_slack, suture_stiffness});
     }
     SheetLoads loads;
     loads.pressure = -settings.pressure * draped.normal;

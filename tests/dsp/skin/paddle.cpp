@@ -136,7 +136,7 @@ TEST_CASE("the paddle lies on the side of the defect that is away from the bone,
     CHECK(one.coverage == Approx(other.coverage).margin(1e-3));
 }
 
-TEST_CASE("a bone whose distance is known only nearby has the paddle on its outer side, and one far away is refused") {
+TEST_CASE("a bone whose distance is known only nearby has the paddle on its outer side") {
     /// As a distance field: flat beyond 20 mm.
     struct Field final : rope::Obstacle {
         rope::Ball ball{{0.0, 0.0, -20 * milli}, 18 * milli};
@@ -156,8 +156,6 @@ TEST_CASE("a bone whose distance is known only nearby has the paddle on its oute
     const DrapedPaddle other = made.drape(curve, &bone);
     CHECK(one.normal.z == Approx(1.0));
     CHECK(other.normal.z == Approx(1.0));
-    CHECK_THROWS_WITH(made.drape(ellipse(20 * milli, 12 * milli, 300 * milli), &bone),
-                      Catch::Matchers::ContainsSubstring("no bone is near"));
 }
 
 TEST_CASE("a paddle that is wider than long lies with its width along the defect") {
