@@ -53,7 +53,7 @@ struct PaddleCase {
 
 }  // namespace
 
-TEST_CASE("a paddle that is larger than a flat defect covers it, and a shorter one the part that its length says") {
+TEST_CASE("a paddle that is larger than a flat defect covers it, and a smaller one the part that its size says") {
     PaddleCase made;
     made.flap.perforators.clear();
     const std::vector<Vec3> rectangle{{-0.02, -0.01, 0.0}, {0.02, -0.01, 0.0}, {0.02, 0.01, 0.0}, {-0.02, 0.01, 0.0}};
@@ -65,9 +65,9 @@ TEST_CASE("a paddle that is larger than a flat defect covers it, and a shorter o
     CHECK(whole.touching == 0.0);
     CHECK(whole.fold == 0.0);
     made.flap.paddle->length = 20 * milli;
-    CHECK(made.drape(rectangle).coverage == Approx(0.5).margin(0.03));
-    made.flap.paddle->length = 60 * milli;
     made.flap.paddle->width = 10 * milli;
+    CHECK(made.drape(rectangle).coverage == Approx(0.25).margin(0.03));
+    made.flap.paddle->length = 60 * milli;
     CHECK(made.drape(rectangle).coverage == Approx(0.5).margin(0.05));
 }
 
