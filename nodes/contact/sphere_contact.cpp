@@ -8,9 +8,7 @@ namespace tactus::nodes {
 
 struct SphereContact {
     static constexpr auto about =
-        "Contact of a ball on the tool with a fixed ball: force = stiffness × depth, along the line of centres. Deeper "
-        "than "
-        "half of the sum of the radii it falls to zero at the centre, where a force along that line would turn over.";
+        "Contact of a ball on the tool with a fixed ball: force = stiffness × depth, along the line of centres.";
 
     In<Pose> pose{"of the tool; its ball is centred at the origin", "m"};
     Out<Wrench> wrench{"on the tool, about its origin", "N, N m"};
@@ -30,10 +28,10 @@ struct SphereContact {
         const Vec3 from_centre = pose->position - centre.value;
         const double distance = glm::length(from_centre);
         const double depth = std::max(0.0, radius + tool_radius - distance);
-        // Any law of the distance alone has an energy, this one too: its slope is at most twice the stiffness.
-        const double middle = 0.5 * (radius + tool_radius);
-        const Vec3 direction = from_centre / std::max(distance, middle);
-        wrench = {direction * (stiffness * depth), {}};
+        // The direction at the very centre is arbitrary. A force that fell to zero there would be taken for free space: an output
+        // holds forces off from a hand that begins inside, by the force that it is asked for.
+        const Vec3 normal = distance > 0.0 ? from_centre / distance : Vec3(0.0, 0.0, 1.0);
+        wrench = {normal * (stiffness * depth), {}};
         penetration = depth;
         in_contact = depth > 0.0;
     }
