@@ -152,19 +152,24 @@ Verb plan_paddle_verb() {
                 verb.add("--length", choice->length, "mm along the leg (a new paddle: 60)").range(5.0, 400.0);
                 verb.add("--width", choice->width, "mm (a new paddle: 40)").range(5.0, 200.0);
                 verb.flag("--remove", choice->remove, "take it away");
-                verb.add("--defect", choice->defect,
-                         "closed curve to be covered, .mrk.json or .fcsv of 3D Slicer, frame of the jaw");
+                const Option defect =
+                    verb.add("--defect", choice->defect,
+                             "closed curve to be covered, .mrk.json or .fcsv of 3D Slicer, frame of the jaw");
                 verb.add("--rope", choice->rope, "length of a perforator from bone to skin, mm")
                     .range(1.0, 200.0)
+                    .needs(defect)
                     .shows_default();
                 verb.add("--thickness", choice->thickness, "of the skin with its fat, mm; assumed")
                     .range(0.5, 50.0)
+                    .needs(defect)
                     .shows_default();
                 verb.add("--young", choice->young, "Young's modulus of the skin, kPa; assumed")
                     .range(1.0, 1e5)
+                    .needs(defect)
                     .shows_default();
                 verb.add("--pressure", choice->pressure, "that presses it on the defect, Pa; assumed")
                     .range(1.0, 1e5)
+                    .needs(defect)
                     .shows_default();
                 verb.add("-o,--out", choice->out, "the draped paddle as a closed mesh: .stl or .ply");
                 verb.add("--picture", choice->picture, "bone, paddle and perforators: .png");
