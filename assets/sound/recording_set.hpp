@@ -66,7 +66,7 @@ struct RecordingSet {
 /// Throws Error with file, line and column.
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate = std::nullopt);
 
-/// What makes it doubtful that a sound file is that of a saw; empty: nothing, or the set is one that somebody wrote.
+/// Warning that a sound file may not be a recording of a saw. Empty if there is no doubt, and for a set written by hand.
 /// A recording in whose multiples of the rate lies less than `min_order_share` of the power is no machine with that
 /// rate: 0.18 to 0.43 was found for chain saws by a microphone and 0.43 to 1 for the library's saw, less than 0.13 for
 /// noise, for a fan, and for rates that are not the machine's.

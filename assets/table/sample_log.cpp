@@ -98,7 +98,7 @@ private:
         columns_ = choose_log_columns(shape_, fields_, file_, selection_);
         for (const std::size_t column : columns_.values) {
             std::string name = columns_.named[column].name;
-            // Two columns of one name are told apart.
+            // Columns of equal names get numbers.
             if (std::ranges::count(columns_.named, name, &NamedColumn::name) > 1)
                 name += fmt::format(" (column {})", column + 1);
             log_.names.push_back(std::move(name));

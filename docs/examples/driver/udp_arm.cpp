@@ -62,9 +62,9 @@ public:
             exchange.publish(reading);  // without one for 20 ms, the sample is invalid and the force fades
         }
         const Vec3 force = exchange.force().force;
-        const std::array<double, 3> told{force.x, force.y, force.z};
+        const std::array<double, 3> sent{force.x, force.y, force.z};
         if (arm_.sin_port != 0)
-            static_cast<void>(::sendto(socket_, told.data(), sizeof(told), 0, reinterpret_cast<const sockaddr*>(&arm_),
+            static_cast<void>(::sendto(socket_, sent.data(), sizeof(sent), 0, reinterpret_cast<const sockaddr*>(&arm_),
                                        sizeof(arm_)));
         return true;
     }

@@ -68,7 +68,7 @@ exit $code
 
 }  // namespace
 
-TEST_CASE("a sweep through a sound card tells the delay of the loop and that a cable changes nothing", "[live]") {
+TEST_CASE("a sweep through a sound card measures the delay of the loop and that a cable changes nothing", "[live]") {
     const Folder folder;
     const json result =
         measured(folder, "--device default --amplitude 0.5 --duration 2 --pause 0.5 --repeats 2 -o card.csv", 0, 0);
