@@ -147,6 +147,24 @@ double Sheet::energy(std::span<const Vec3> at, const SheetLoads& loads) const no
     return sum;
 }
 
+void Sheet::add_bending(std::span<const Vec3> at, std::vector<Vec3>& out) const noexcept {
+    const auto p = [&](int node) -> const Vec3& { return at[static_cast<std::size_t>(node)]; };
+    const auto add = [&](int node, const Vec3& part) { out[static_cast<std::size_t>(node)] += part; };
+    for (const Bend& b : bends_) {
+        const Vec3 c = b.weight * (p(b.a) - 2.0 * p(b.b) + p(b.c));
+        add(b.a, c);
+        add(b.b, -2.0 * c);
+        add(b.c, c);
+    }
+    for (const Twist4& t : twists_) {
+        const Vec3 c = t.weight * (p(t.n00) - p(t.n10) - p(t.n01) + p(t.n11));
+        add(t.n00, c);
+        add(t.n10, -c);
+        add(t.n01, -c);
+        add(t.n11, c);
+    }
+}
+
 void Sheet::elastic_gradient(std::span<const Vec3> at, std::vector<Vec3>& out) const noexcept {
     const auto p = [&](int node) -> const Vec3& { return at[static_cast<std::size_t>(node)]; };
     const auto add = [&](int node, const Vec3& force) { out[static_cast<std::size_t>(node)] += force; };
@@ -168,19 +186,7 @@ void Sheet::elastic_gradient(std::span<const Vec3> at, std::vector<Vec3>& out) c
         add(s.n10, minus);
         add(s.n01, -minus);
     }
-    for (const Bend& b : bends_) {
-        const Vec3 c = b.weight * (p(b.a) - 2.0 * p(b.b) + p(b.c));
-        add(b.a, c);
-        add(b.b, -2.0 * c);
-        add(b.c, c);
-    }
-    for (const Twist4& t : twists_) {
-        const Vec3 c = t.weight * (p(t.n00) - p(t.n10) - p(t.n01) + p(t.n11));
-        add(t.n00, c);
-        add(t.n10, -c);
-        add(t.n01, -c);
-        add(t.n11, c);
-    }
+    add_bending(at, out);
 }
 
 void Sheet::gradient(std::span<const Vec3> at, const SheetLoads& loads, std::vector<Vec3>& out) const noexcept {
@@ -267,19 +273,7 @@ void Sheet::multiply(const std::vector<Vec3>& in, std::vector<Vec3>& out) const 
         add(s.n10, angle * shear_v_[n]);
         add(s.n01, -angle * shear_v_[n]);
     }
-    for (const Bend& b : bends_) {
-        const Vec3 c = b.weight * (d(b.a) - 2.0 * d(b.b) + d(b.c));
-        add(b.a, c);
-        add(b.b, -2.0 * c);
-        add(b.c, c);
-    }
-    for (const Twist4& t : twists_) {
-        const Vec3 c = t.weight * (d(t.n00) - d(t.n10) - d(t.n01) + d(t.n11));
-        add(t.n00, c);
-        add(t.n10, -c);
-        add(t.n01, -c);
-        add(t.n11, c);
-    }
+    add_bending(in, out);
     for (std::size_t n = 0; n < in.size(); ++n)
         if (held_[n]) out[n] = Vec3(0.0);
 }

@@ -97,6 +97,8 @@ private:
 
     double energy(std::span<const Vec3> at, const SheetLoads& loads) const noexcept;
     void gradient(std::span<const Vec3> at, const SheetLoads& loads, std::vector<Vec3>& out) const noexcept;
+    /// The energy of bending is quadratic: its gradient at `at`, and its Hessian times `at`.
+    void add_bending(std::span<const Vec3> at, std::vector<Vec3>& out) const noexcept;
     void elastic_gradient(std::span<const Vec3> at, std::vector<Vec3>& out) const noexcept;
     /// Linearises at `at`: the parts that multiply() uses.
     void linearise(std::span<const Vec3> at, const SheetLoads& loads, double inertia_scale) noexcept;
