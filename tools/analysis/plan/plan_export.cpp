@@ -55,7 +55,8 @@ std::string markup_of(const std::string& fragment, const std::vector<Landmark>& 
 }  // namespace
 
 ExportedPlan export_plan(const plan::CasePlan& plan, const std::filesystem::path& folder,
-                         const std::filesystem::path& out, const std::string& format) {
+                         const std::filesystem::path& out, const std::string& format,
+                         const std::string& transform_format) {
     plan::check_files(plan, folder);
     const plan::PlanState state = plan::state_of(plan);
     const std::vector<plan::PlanFragment> fragments = plan::fragments_of(plan, state);
@@ -84,10 +85,10 @@ ExportedPlan export_plan(const plan::CasePlan& plan, const std::filesystem::path
         mesh::ColouredSurface surface{surface_of_file(plan::file_of(fragment.file, folder), loaded[k].map.grid),
                                       fragment.colour};
         for (Vec3& v : surface.surface.vertices) v = pose.apply(v);
-        const std::vector<std::string> files{names[k] + "." + format, names[k] + ".tfm", names[k] + ".scan.mrk.json",
-                                             names[k] + ".plan.mrk.json"};
+        const std::vector<std::string> files{names[k] + "." + format, names[k] + "." + transform_format,
+                                             names[k] + ".scan.mrk.json", names[k] + ".plan.mrk.json"};
         mesh::write_mesh({&surface, 1}, out / files[0]);
-        file::write_whole_file(out / files[1], transform::text_of(pose));
+        transform::write_motion(out / files[1], pose);
         const auto marks = landmarks_of(loaded[k].bone.points);
         file::write_whole_file(out / files[2], markup_of(fragment.name, marks, {}));
         file::write_whole_file(out / files[3], markup_of(fragment.name, marks, pose));

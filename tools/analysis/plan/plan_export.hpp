@@ -23,8 +23,10 @@ struct ExportedPlan {
     std::vector<std::string> left_out;  ///< names of the hidden fragments
 };
 
-/// `folder`: of the plan; `out`: is created; `format`: "stl" or "ply". Throws Error, also if all fragments are hidden.
+/// `folder`: of the plan; `out`: is created; `format`: "stl" or "ply"; `transform_format`: "tfm" or "h5". Throws Error, also if
+/// all fragments are hidden.
 ExportedPlan export_plan(const plan::CasePlan& plan, const std::filesystem::path& folder,
-                         const std::filesystem::path& out, const std::string& format);
+                         const std::filesystem::path& out, const std::string& format,
+                         const std::string& transform_format = "tfm");
 
 }  // namespace tactus::analysis

@@ -16,7 +16,7 @@ namespace {
 using file::Json;
 
 struct ExportChoice : PlanChoice {
-    std::string format = "stl";
+    std::string format = "stl", transform_format = "tfm";
     std::filesystem::path out;
 };
 
@@ -24,7 +24,7 @@ int export_plan(const ExportChoice& choice) {
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     Json written = Json::array();
     const analysis::ExportedPlan exported =
-        analysis::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format);
+        analysis::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format, choice.transform_format);
     for (const analysis::ExportedFragment& one : exported.written) {
         written.push_back({{"fragment", one.name}, {"files", one.files}, {"pose", pose_json<Json>(one.pose)}});
         if (!choice.json) fmt::print("{}\n", fmt::join(one.files, ", "));
@@ -41,6 +41,9 @@ Action declare_plan_export(VerbOptions& verb) {
     add_plan_options(verb, *choice);
     verb.add("-o,--out", choice->out, "folder for meshes and tables").required();
     verb.add("--format", choice->format, "format of the meshes").one_of({"stl", "ply"}).shows_default();
+    verb.add("--transform-format", choice->transform_format, "format of the transforms: ITK's text, or HDF5")
+        .one_of({"tfm", "h5"})
+        .shows_default();
     return [choice] { return export_plan(*choice); };
 }
 
