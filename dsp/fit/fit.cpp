@@ -233,10 +233,11 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     FitPrecisionSum sum(best.pose.position, best.pose.apply(moving.far));
     sum.add(moving, fixed, {}, energy.closed(best.pose));
     fit.precision = sum.precision();
-    fit.bound = bound_of(fit.precision, fit.margin, best.pose, rival, Vec3(0.0), moving.far, false);
+    const FitPrecision calibrated = sum.calibrated();
+    fit.bound = bound_of(calibrated, fit.margin, best.pose, rival, Vec3(0.0), moving.far, false);
     for (const Candidate& c : slips_of(energy, best.pose, settings, fit.iterations))
         if (best.score > 0.0 && pose_distance(c.pose, best.pose, radius) > 1e-3)
-            fit.bound = wider(fit.bound, bound_of(fit.precision, std::max(0.0, 1.0 - c.score / best.score), best.pose,
+            fit.bound = wider(fit.bound, bound_of(calibrated, std::max(0.0, 1.0 - c.score / best.score), best.pose,
                                                   c.pose, Vec3(0.0), moving.far, false));
     fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings, fit.precision.far);
     return fit;
@@ -267,8 +268,8 @@ Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fix
             const double before = fit.margin;
             fit.margin = std::min(before, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));
             if (fit.margin < before)
-                fit.bound = wider(
-                    fit.bound, bound_of(fit.precision, fit.margin, chosen, other, Vec3(0.0), moving_face->far, false));
+                fit.bound =
+                    wider(fit.bound, bound_of({}, fit.margin, chosen, other, Vec3(0.0), moving_face->far, false));
         }
     }
     fit.verdict =

@@ -177,7 +177,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
                 energies_[k].closed(centres_of(k, there)));
     }
     match_.precision = sum.precision();
-    match_.bound = bound_of(match_.precision, match_.margin, centres(best.pair, at, poses), best.rival, Vec3(0.0),
+    match_.bound = bound_of(sum.calibrated(), match_.margin, centres(best.pair, at, poses), best.rival, Vec3(0.0),
                             leading.far, !pulls_.empty());
     // The healthy side holds the far end too.
     FitSettings required = fit;

@@ -96,6 +96,7 @@ Held hold(std::uint64_t seed, double radius, double noise) {
 
 TEST_CASE("dsp: a small noisy face stays at its pose, and is no fit where it cannot hold the far end") {
     double squares = 0.0, said = 0.0;
+    int covered = 0;
     constexpr int count = 8;
     for (std::uint64_t seed = 1; seed <= count; ++seed) {
         const Held held = hold(seed, 5.0 * mm, 0.05 * mm);
@@ -106,7 +107,9 @@ TEST_CASE("dsp: a small noisy face stays at its pose, and is no fit where it can
         CHECK(held.far < 1.2 * mm);
         squares += held.far * held.far;
         said += held.match.precision.far * held.match.precision.far / 4.0;
+        covered += held.far <= held.match.bound.far && held.turn * degree <= held.match.bound.turn;
     }
+    CHECK(covered >= count - 1);
     // What is said is what it is, within the accuracy of eight samples.
     const double error = std::sqrt(squares / count), deviation = std::sqrt(said / count);
     INFO(error / mm << " mm, said " << deviation / mm);
@@ -165,6 +168,26 @@ TEST_CASE(
     CHECK(with.face == Approx(2.0 * mm));
     CHECK(with.far == Approx(glm::length(slip.apply(far) - far)));
     const fit::PoseBound healthy = fit::bound_of(precision, 0.6, best, slip, face, far, true);
-    CHECK(healthy.far == Approx(1.5 * mm));
+    CHECK(healthy.far == Approx(1.5 * mm + degree * 100.0 * mm));
     CHECK(healthy.turn == Approx(1.0 * degree));
+}
+
+TEST_CASE("dsp: chips widen neither the bound of a pose nor hide its noise") {
+    // A flat face with relief slopes in all directions, noise of 10 µm, and chips over a fifth of its area.
+    const auto face_with = [](double chipped) {
+        const Half left = shaft_half(-1.0, 3, 8.0 * mm, 0.01 * mm), right = shaft_half(1.0, 3, 8.0 * mm, 0.01 * mm);
+        fit::FitSurface moving = fit::make_fit_surface(left.points, left.distance);
+        const fit::FitSurface fixed = fit::make_fit_surface(right.points, right.distance);
+        for (Vec3& p : moving.position)
+            if (p.y > (1.0 - 2.0 * chipped) * 8.0 * mm) p.x -= 0.25 * mm;
+        fit::FitPrecisionSum sum(Vec3(0.0), Vec3(-far_end, 0.0, 0.0));
+        sum.add(moving, fixed, {fixed.centre, {1.0, 0.0, 0.0, 0.0}}, fit::between_centres(moving, fixed, {}));
+        return std::pair(sum.precision(), sum.calibrated());
+    };
+    const auto [whole, whole_bound] = face_with(0.0);
+    const auto [chipped, chipped_bound] = face_with(0.2);
+    INFO(whole.far / mm << " " << whole_bound.far / mm << " " << chipped.far / mm << " " << chipped_bound.far / mm);
+    CHECK(chipped.far > 2.0 * whole.far);
+    CHECK(chipped_bound.far < 1.6 * whole_bound.far);
+    CHECK(chipped_bound.face >= fit::PoseBound::bias * 0.6 * mm);
 }

@@ -4,19 +4,24 @@
 #include "assets/library/fibula.hpp"
 #include "assets/plan/case_bones.hpp"
 #include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tools/analysis/bone/fracture.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/fit/shaft_shapes.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace tactus::bench {
@@ -32,6 +37,8 @@ struct ShaftsChoice {
     int first = 0, count = 20;
     double chips = 0.2, kerf = 0.0, roughness = 0.8;  // share, mm, mm
     double size = 1.0;  // of the bone
+    double voxel = 0.35;  // mm, of the scans
+    int shapes = 0;  // of the bones; 0: the library's fibula alone
     std::optional<double> told_kerf;  // mm
     bool told = false, json = false;
     std::filesystem::path bone;
@@ -81,6 +88,8 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
     settings.chips = choice.chips;
     settings.kerf = choice.kerf * 1e-3;
     settings.roughness = choice.roughness * 1e-3;
+    settings.voxel = choice.voxel * 1e-3;
+    settings.spacing = std::max(settings.spacing, settings.voxel);
     std::vector<analysis::CaseFragment> fragments;
     std::vector<Pose> place;
     analysis::break_and_scan(bone, settings, [&](analysis::ScannedFragment one) {
@@ -143,59 +152,92 @@ double part_of(std::vector<double> values, double share) {
                           : values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-/// How often the bounds of fits and uncertain fits hold, and what the rest was.
+/// How often the bounds of fits and uncertain fits hold, and how wide they are.
 struct BoundTally {
-    int placed = 0, uncertain = 0, refused_right = 0;
-    std::vector<double> covered;  ///< 1 or 0 per placed shaft: turn, face and far end are all within the bound
-    std::vector<double> bounds, errors;  ///< mm, at the far end
+    static constexpr std::size_t quantities = 3;  // turn, face, far end
+    static constexpr std::array<const char*, quantities> names{"turn_deg", "face_mm", "end_mm"};
+
+    int placed = 0, uncertain = 0, refused_right = 0, uncertain_wrong = 0;
+    std::vector<std::pair<int, double>> covered;  ///< shape, and 1 or 0: all three are within the bound
+    std::array<std::vector<double>, quantities> bounds, errors;  ///< degrees, mm, mm
 };
 
 /// Right means at most 5° and 3 mm at the face.
-void count(BoundTally& tally, const Shaft& shaft) {
-    const bool is_placed = shaft.verdict == "fit" || shaft.verdict == "uncertain";
-    tally.refused_right += !is_placed && shaft.angle <= 5.0 && shaft.face_error <= 3e-3;
+void count(BoundTally& tally, const Shaft& shaft, int shape) {
+    const bool is_placed = shaft.verdict == "fit" || shaft.verdict == "uncertain",
+               is_right = shaft.angle <= 5.0 && shaft.face_error <= 3e-3;
+    tally.refused_right += !is_placed && is_right;
     if (!is_placed) return;
     ++tally.placed;
     tally.uncertain += shaft.verdict == "uncertain";
-    tally.covered.push_back(shaft.angle * degree <= shaft.bound.turn && shaft.face_error <= shaft.bound.face &&
-                            shaft.end_error <= shaft.bound.far);
-    tally.bounds.push_back(std::min(shaft.bound.far * 1e3, 1e3));
-    tally.errors.push_back(shaft.end_error * 1e3);
+    tally.uncertain_wrong += shaft.verdict == "uncertain" && !is_right && !shaft.bound.has_rival;
+    const std::array<double, BoundTally::quantities> bound{shaft.bound.turn / degree, shaft.bound.face * 1e3,
+                                                           std::min(shaft.bound.far * 1e3, 1e3)},
+        error{shaft.angle, shaft.face_error * 1e3, shaft.end_error * 1e3};
+    bool is_covered = true;
+    for (std::size_t n = 0; n < BoundTally::quantities; ++n) {
+        is_covered = is_covered && error[n] <= bound[n];
+        tally.bounds[n].push_back(bound[n]);
+        tally.errors[n].push_back(error[n]);
+    }
+    tally.covered.emplace_back(shape, is_covered ? 1.0 : 0.0);
 }
 
-double mean_of(const std::vector<double>& values) {
+double mean_of(const std::vector<std::pair<int, double>>& values) {
     double sum = 0.0;
-    for (const double v : values) sum += v / static_cast<double>(values.size());
+    for (const auto& [shape, value] : values) sum += value / static_cast<double>(values.size());
     return sum;
 }
 
-/// The 2.5 and 97.5 % quantiles of the coverage, by a bootstrap over shafts.
-std::pair<double, double> coverage_range(const std::vector<double>& covered) {
+/// The 2.5 and 97.5 % quantiles of the coverage, by a bootstrap over shapes: shafts of one shape are not independent.
+std::pair<double, double> coverage_range(const std::vector<std::pair<int, double>>& covered) {
     constexpr int draws = 2000;
     const Random random{20261};
+    std::map<int, std::pair<double, double>> shapes;  // sum and count
+    for (const auto& [shape, value] : covered) {
+        shapes[shape].first += value;
+        shapes[shape].second += 1.0;
+    }
+    std::vector<std::pair<double, double>> sums;
+    for (const auto& [shape, sum] : shapes) sums.push_back(sum);
     std::vector<double> means;
-    for (int d = 0; d < draws && !covered.empty(); ++d) {
-        double sum = 0.0;
-        for (std::size_t n = 0; n < covered.size(); ++n) {
-            const double u = random.uniform(static_cast<std::uint64_t>(d) * covered.size() + n);
-            sum += covered[std::min(covered.size() - 1,
-                                    static_cast<std::size_t>(u * static_cast<double>(covered.size())))];
+    for (int d = 0; d < draws && !sums.empty(); ++d) {
+        double sum = 0.0, all = 0.0;
+        for (std::size_t n = 0; n < sums.size(); ++n) {
+            const double u = random.uniform(static_cast<std::uint64_t>(d) * sums.size() + n);
+            const auto& one =
+                sums[std::min(sums.size() - 1, static_cast<std::size_t>(u * static_cast<double>(sums.size())))];
+            sum += one.first;
+            all += one.second;
         }
-        means.push_back(sum / static_cast<double>(covered.size()));
+        means.push_back(sum / all);
     }
     return {part_of(means, 0.025), part_of(means, 0.975)};
 }
 
+Json bounds_json(const BoundTally& tally) {
+    Json json = Json::object();
+    for (std::size_t n = 0; n < BoundTally::quantities; ++n)
+        json[BoundTally::names[n]] =
+            Json{{"bound_median", part_of(tally.bounds[n], 0.5)}, {"error_median", part_of(tally.errors[n], 0.5)}};
+    return json;
+}
+
 int bench_shafts(const ShaftsChoice& choice) {
-    const bone::Bone bone =
-        resized(choice.bone.empty() ? library::make_fibula() : plan::bone_from_file(choice.bone), choice.size);
+    if (choice.shapes > 0 && !choice.bone.empty()) throw Error("--shapes replaces the bone: leave out --bone");
+    bone::Bone bone;
+    if (choice.shapes == 0)
+        bone = resized(choice.bone.empty() ? library::make_fibula() : plan::bone_from_file(choice.bone), choice.size);
     std::vector<double> angles, errors;
     int fits = 0, good = 0;
     BoundTally tally;
     Json rows = Json::array();
     for (int n = choice.first; n < choice.first + choice.count; ++n) {
+        if (choice.shapes > 0) bone = resized(shaft_shape(n % choice.shapes), choice.size);
         const Shaft shaft = fit_shaft(bone, choice, n);
-        count(tally, shaft);
+        // Without shapes every shaft is a sample of its own.
+        const int shape = choice.shapes > 0 ? n % choice.shapes : n;
+        count(tally, shaft, shape);
         fits += shaft.verdict == "fit";
         good += shaft.verdict == "fit" && shaft.angle <= goal_angle && shaft.error <= goal_error;
         if (shaft.verdict == "fit") {
@@ -203,6 +245,7 @@ int bench_shafts(const ShaftsChoice& choice) {
             errors.push_back(shaft.error * 1e3);
         }
         rows.push_back({{"shaft", n},
+                        {"shape", shape},
                         {"verdict", shaft.verdict},
                         {"face_mm2", shaft.area * 1e6},
                         {"angle_deg", shaft.angle},
@@ -233,8 +276,8 @@ int bench_shafts(const ShaftsChoice& choice) {
                      {"bound_coverage", mean_of(tally.covered)},
                      {"bound_coverage_low", low},
                      {"bound_coverage_high", high},
-                     {"bound_median_mm", part_of(tally.bounds, 0.5)},
-                     {"end_error_median_mm", part_of(tally.errors, 0.5)},
+                     {"wrong_uncertain_without_rival", tally.uncertain_wrong},
+                     {"bounds", bounds_json(tally)},
                      {"shafts", choice.count},
                      {"fits", fits},
                      {"within_goal", good},
@@ -244,12 +287,19 @@ int bench_shafts(const ShaftsChoice& choice) {
                      {"error_median_mm", part_of(errors, 0.5)},
                      {"error_p90_mm", part_of(errors, 0.9)},
                      {"error_max_mm", part_of(errors, 1.0)}};
-    if (!choice.json)
+    if (!choice.json) {
         fmt::print(
-            "{} placed, {} of them uncertain; {} right ones refused; the bound of 95 % holds for {:.0f} % ({:.0f} to "
-            "{:.0f} %, bootstrap by shaft); at the far end its median is {:.2f} mm, that of the errors {:.2f} mm\n",
-            tally.placed, tally.uncertain, tally.refused_right, 100.0 * mean_of(tally.covered), 100.0 * low,
-            100.0 * high, part_of(tally.bounds, 0.5), part_of(tally.errors, 0.5));
+            "{} placed, {} of them uncertain ({} at a wrong place without a rival); {} right ones refused; the bound "
+            "of "
+            "95 % holds for {:.1f} % ({:.1f} to {:.1f} %, bootstrap by shape)\n",
+            tally.placed, tally.uncertain, tally.uncertain_wrong, tally.refused_right, 100.0 * mean_of(tally.covered),
+            100.0 * low, 100.0 * high);
+        constexpr std::array<const char*, BoundTally::quantities> words{"degrees", "mm at the face",
+                                                                        "mm at the far end"};
+        for (std::size_t n = 0; n < BoundTally::quantities; ++n)
+            fmt::print("    median bound {:.3f}, median error {:.3f} {}\n", part_of(tally.bounds[n], 0.5),
+                       part_of(tally.errors[n], 0.5), words[n]);
+    }
     if (choice.json) fmt::print("{}\n", Json{{"version", 1}, {"total", total}, {"rows", rows}}.dump(2));
     else
         fmt::print(
@@ -281,6 +331,11 @@ Verb shafts_verb() {
             verb.add("--size", choice->size, "of the bone, as a share: small bones have small faces")
                 .shows_default()
                 .range(0.2, 2.0);
+            verb.add("--voxel", choice->voxel, "mm, of the scans").shows_default().range(0.1, 2.0);
+            verb.add("--shapes", choice->shapes,
+                     "number of bones of different shapes, in turn; 0: the library's fibula")
+                .shows_default()
+                .range(0, 10'000);
             verb.add("--bone", choice->bone, "file of the long bone (default: the library's fibula)");
             verb.flag("--json", choice->json, "as JSON");
             return [choice] { return bench_shafts(*choice); };
