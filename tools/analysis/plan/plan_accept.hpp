@@ -12,7 +12,7 @@ namespace tactus::analysis {
 
 /// Basis of the decision, and the residual recorded with it.
 enum class AcceptedBy {
-    hand,    ///< visual judgement; residual: median gap between the fragment and its partner
+    hand,    ///< visual judgement; residual: median gap to its partner; if nothing faces it, depth or distance
     mirror,  ///< the mirrored healthy side; residual: median distance of the fragment from it
     plan     ///< the planned pose of a piece of a reconstruction; residual: distance from it
 };
@@ -25,13 +25,14 @@ struct Acceptance {
     double residual = 0.0;  ///< m
     double gap = 0.0, penetration = 0.0;  ///< m, between the fragment and its partner
     double facing = 0.0;  ///< m²
+    double apart = 0.0;  ///< m: distance of the surfaces if nothing faces the fragment within 3 mm, to about 1 mm
 };
 
-/// Measures a fragment at its current pose. `partner`: the fragment beside it; none: the first fragment of the fixed
-/// part, otherwise of the other shown ones. The decision holds until either moves from the other, like a fit. Throws
-/// Error for a hidden fragment or partner; for `mirror` if the plan has no healthy side or the fragment is farther from
-/// it than max_mirror_residual; for `plan` if the fragment is not a piece of a reconstruction or not at its planned
-/// pose.
+/// Measures a fragment at its current pose. `partner`: the fragment beside it; none: of the fixed part, otherwise of the
+/// other shown fragments, the one that faces it over the largest area, or the nearest if none faces it. The decision
+/// holds until either moves from the other, like a fit. Throws Error for a hidden fragment or partner; for `mirror` if
+/// the plan has no healthy side or the fragment is farther from it than max_mirror_residual; for `plan` if the fragment
+/// is not a piece of a reconstruction or not at its planned pose.
 Acceptance measure_acceptance(const plan::CasePlan& plan, const std::filesystem::path& folder, int fragment,
                               AcceptedBy by, std::optional<int> partner = {});
 

@@ -27,9 +27,13 @@ int accept_place(const AcceptChoice& choice) {
         analysis::measure_acceptance(plan, choice.plan.parent_path(), fragment, by, beside);
     analysis::do_step(plan, analysis::step_of(plan, fragment, by, found), choice.plan);
     if (choice.json) return show_change(choice);
-    fmt::print("{}: accepted by {} beside {}, residual {:.2f} mm; {:.0f} mm² face each other, {:.2f} mm deep\n",
-               choice.names.front(), choice.by, found.partner, found.residual * 1e3, found.facing * 1e6,
-               found.penetration * 1e3);
+    fmt::print("{}: accepted by {} beside {}, residual {:.2f} mm; ", choice.names.front(), choice.by, found.partner,
+               found.residual * 1e3);
+    if (found.facing > 0.0)
+        fmt::print("{:.0f} mm² face each other, {:.2f} mm deep\n", found.facing * 1e6, found.penetration * 1e3);
+    else if (found.penetration > 0.0)
+        fmt::print("nothing faces it, and it lies {:.2f} mm deep in that one\n", found.penetration * 1e3);
+    else fmt::print("nothing faces it within 3 mm, the surfaces are about {:.0f} mm apart\n", found.apart * 1e3);
     return done;
 }
 
@@ -43,7 +47,8 @@ Action declare_plan_accept(VerbOptions& verb) {
             "planned place of a piece of a reconstruction")
         .one_of({"hand", "mirror", "plan"})
         .required();
-    verb.add("--beside", choice->beside, "fragment that it is placed beside (default: the first of what stands)");
+    verb.add("--beside", choice->beside,
+             "fragment that it is placed beside (default: the placed one that faces it over the largest area)");
     return [choice] { return accept_place(*choice); };
 }
 
