@@ -71,6 +71,7 @@
     X(plan_report, plan)                \
     X(plan_fibula, reconstruction)      \
     X(plan_reconstruct, reconstruction) \
+    X(plan_cuts, reconstruction)        \
     X(plan_plate, reconstruction)       \
     X(plan_implant, reconstruction)     \
     X(plan_vessel, reconstruction)      \

@@ -125,7 +125,7 @@ private:
         else
             add("away-from-plan",
                 fmt::format("{} lies {}; cuts, tables and the order of the operation are locked to the planned place: "
-                            "move it back, plan other cuts with 'tactus plan reconstruct --alternative', or accept it "
+                            "move it back, derive other cuts with 'tactus plan cuts --from-pieces', or accept it "
                             "with 'tactus plan accept'",
                             name(piece), where),
                 name(piece), "", true);
