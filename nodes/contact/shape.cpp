@@ -4,7 +4,7 @@
 #include "dsp/coupling/scene.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
 #include "graph/node/node.hpp"
-#include "nodes/contact/body_parts.hpp"
+#include "nodes/contact/made_bodies.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -56,8 +56,23 @@ private:
             throw Error("the distance field would have over 200 million samples; raise 'voxel'");
         if (!(extent.x * extent.y + extent.y * extent.z + extent.z * extent.x < 1e7 * spacing * spacing))
             throw Error("the surface would have over 10 million points; raise 'spacing'");
-        parts_ = std::make_shared<const BodyParts>(contact::make_pointshell(shape.points(spacing)),
-                                                   contact::voxmap_of(shape, voxel, margin), Pose{}, triangles);
+        const BodyKey key{static_cast<double>(kind.index),
+                          size.value.x,
+                          size.value.y,
+                          size.value.z,
+                          diameter,
+                          height,
+                          clearance,
+                          wall,
+                          bevel,
+                          spacing,
+                          voxel,
+                          margin,
+                          triangles ? 1.0 : 0.0};
+        parts_ = MadeBodies::of_process().get(key, [&] {
+            return std::make_shared<const BodyParts>(contact::make_pointshell(shape.points(spacing)),
+                                                     contact::voxmap_of(shape, voxel, margin), Pose{}, triangles);
+        });
     }
 
     std::shared_ptr<const BodyParts> parts_;

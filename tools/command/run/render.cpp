@@ -4,6 +4,7 @@
 #include "tools/exit_code.hpp"
 #include "tools/render/frames.hpp"
 #include "tools/run/device_scale.hpp"
+#include "tools/run/kept_assets.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/run/output_folder.hpp"
 #include "tools/run/results.hpp"
@@ -55,8 +56,7 @@ int render(const RenderChoice& choice) {
         options.replay = &*log;
         options.seconds = log->seconds;
     }
-    compile::AssetCache assets;
-    compile::Schedule plan = load_plan(choice, assets);
+    compile::Schedule plan = load_plan(choice, kept_assets());
     OutputFolder folder({choice.out, choice.overwrite});
     options.folder = folder.path();
     const std::atomic<bool>& interrupted = stop_on_signals();
