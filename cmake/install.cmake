@@ -26,7 +26,7 @@ tactus_place(TACTUS_INSTALLED_MODULES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus assets
 # Nodes from outside that all users have.
 tactus_place(TACTUS_INSTALLED_NODES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus graph/plugin/plugins.cpp)
 
-install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
+install(DIRECTORY assets/library/patches assets/library/displays assets/library/sweeps DESTINATION ${installed_library}
         COMPONENT common FILES_MATCHING PATTERN "*.toml")
 install(DIRECTORY assets/library/experiments DESTINATION ${installed_library} COMPONENT common)
 install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} COMPONENT common FILES_MATCHING PATTERN "*.png")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The library stands beside the command: patches, tasks, experiments and display files copied from assets/library, bones and recordings computed.
-foreach(kind patches displays tasks experiments)
+# The library stands beside the command: patches, tasks, experiments, sweeps and display files copied from assets/library, bones and recordings computed.
+foreach(kind patches displays tasks experiments sweeps)
   set(folder ${PROJECT_SOURCE_DIR}/assets/library/${kind})
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.toml ${folder}/*.targets)
   foreach(file ${files})

@@ -111,7 +111,8 @@ void run_page(const fs::path& page) {
 
 /// The verb of "tactus plan snap …", with the second word where the verb has verbs of its own.
 std::string verb_of(const std::vector<std::string>& words) {
-    const bool is_twofold = words.size() > 2 && (words[1] == "plan" || words[1] == "bench" || words[1] == "experiment");
+    const bool is_twofold = words.size() > 2 && (words[1] == "plan" || words[1] == "bench" ||
+                                                 words[1] == "experiment" || words[1] == "sweep");
     return is_twofold ? words[1] + " " + words[2] : words[1];
 }
 

@@ -3,7 +3,9 @@
 #include "assets/file/json.hpp"
 #include "assets/library/mandible.hpp"
 #include "dsp/core/clock.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
 #include "dsp/fit/fit.hpp"
 #include "tools/analysis/bone/fragment_file.hpp"
 #include "tools/bench/bench.hpp"
@@ -30,6 +32,8 @@ struct SnapBenchChoice {
     std::uint64_t seed = 1001;
     int seeds = 8, trials = 1;
     std::vector<std::string> cases, methods;
+    std::optional<double> chips;  ///< percent of the fracture's surface
+    std::string start;
     std::filesystem::path bone;
     bool pushed = false, json = false;
 };
@@ -184,6 +188,14 @@ Json whole_case_rows(const SnapBenchChoice& choice, const bone::Bone& bone) {
     return rows;
 }
 
+/// "8 mm 20 deg".
+FractureStart parse_start(const std::string& text) {
+    const std::size_t first = text.find(" mm "), last = text.find(" deg");
+    if (first == std::string::npos || last == std::string::npos || last + 4 != text.size() || last < first + 4)
+        throw Error(fmt::format("--start must be a distance and an angle, as in '8 mm 20 deg', not '{}'", text));
+    return {parse_as(text.substr(0, first + 3), "m") * 1e3, parse_as(text.substr(first + 4), "rad") / degree};
+}
+
 std::vector<FractureCase> chosen_cases(const std::vector<std::string>& names) {
     if (names.empty()) return fracture_cases();
     std::vector<FractureCase> chosen;
@@ -205,8 +217,17 @@ std::vector<FractureCase> chosen_cases(const std::vector<std::string>& names) {
 }  // namespace
 
 int bench_snap(const SnapBenchChoice& choice) {
-    const std::vector<FractureCase> cases = chosen_cases(choice.cases);
-    const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
+    std::vector<FractureCase> cases = chosen_cases(choice.cases);
+    const bool is_own = choice.chips || !choice.start.empty();
+    if (is_own) {
+        if (!choice.cases.empty()) throw Error("--chips and --start make a case of their own; leave out --case");
+        FractureCase own = fracture_cases().front();
+        own.kind.name = "own";
+        if (choice.chips) own.kind.chips = 0.01 * *choice.chips;
+        if (!choice.start.empty()) own.starts = {parse_start(choice.start)};
+        cases = {own};
+    }
+    const bool live = (choice.cases.empty() && !is_own) || std::ranges::count(choice.cases, live_case) > 0;
     const bone::Bone bone = choice.bone.empty() ? library::make_mandible() : analysis::bone_of_file(choice.bone);
     Json rows = whole_case_rows(choice, bone);
     if (!choice.json && !cases.empty())
@@ -259,6 +280,10 @@ Verb snap_verb() {
                          "clean, chipped25, chipped30, spilled, both, fine or live (default: all of these); twelve, "
                          "twelve-kerf, twelve-missing: a jaw in twelve pieces, by the matcher")
                     .separated_by(',');
+                verb.add("--chips", choice->chips,
+                         "a case of its own: clean, with this percentage of the fracture's surface missing")
+                    .range(0.0, 60.0);
+                verb.add("--start", choice->start, "a case of its own: its only start, as in '8 mm 20 deg'");
                 verb.add("--method", choice->methods,
                          "extended, global, baseline, icp_point, icp_plane, gicp (default: all)")
                     .separated_by(',')

@@ -37,6 +37,7 @@
     X(session, training, training)       \
     X(score, training, training)         \
     X(experiment, experiment, research)  \
+    X(sweep, sweep, research)            \
     X(gripper, gripper, grippers)        \
     X(calibrate, display, displays)      \
     X(devices, machine, machine)         \
@@ -88,6 +89,14 @@
     X(experiment_analyse, experiment) \
     X(experiment_withdraw, experiment)
 
+#define TACTUS_SWEEP_VERBS(X) \
+    X(sweep_run, sweep)       \
+    X(sweep_work, sweep)      \
+    X(sweep_status, sweep)    \
+    X(sweep_plot, sweep)      \
+    X(sweep_report, sweep)    \
+    X(sweep_verify, sweep)
+
 namespace tactus::command {
 
 namespace {
@@ -107,6 +116,7 @@ Verb under(const char* job, Verb verb) {
 TACTUS_VERBS(TACTUS_DECLARE)
 TACTUS_PLAN_VERBS(TACTUS_DECLARE)
 TACTUS_EXPERIMENT_VERBS(TACTUS_DECLARE)
+TACTUS_SWEEP_VERBS(TACTUS_DECLARE)
 #undef TACTUS_DECLARE
 
 #define TACTUS_LIST(name, folder, job) under(job, name##_verb()),
@@ -130,6 +140,11 @@ const Verbs& plan_verbs() {
 
 const Verbs& experiment_verbs() {
     static const Verbs all{TACTUS_EXPERIMENT_VERBS(TACTUS_LIST)};
+    return all;
+}
+
+const Verbs& sweep_verbs() {
+    static const Verbs all{TACTUS_SWEEP_VERBS(TACTUS_LIST)};
     return all;
 }
 

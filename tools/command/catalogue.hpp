@@ -14,5 +14,7 @@ Program tactus_program();
 const Verbs& plan_verbs();
 /// Those of 'experiment'.
 const Verbs& experiment_verbs();
+/// Those of 'sweep'.
+const Verbs& sweep_verbs();
 
 }  // namespace tactus::command

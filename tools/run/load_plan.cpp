@@ -4,6 +4,7 @@
 #include "assets/file/part.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
+#include "tools/run/find_sweep.hpp"
 #include "tools/run/saw_fits.hpp"
 
 #include <fmt/format.h>
@@ -86,6 +87,8 @@ fs::path find_patch(const std::string& name) { return find_bundled(name, "patch"
 fs::path find_task(const std::string& name) { return find_bundled(name, "task", "tasks"); }
 
 fs::path find_experiment(const std::string& name) { return find_bundled(name, "experiment", "experiments"); }
+
+fs::path find_sweep(const std::string& name) { return find_bundled(name, "sweep", "sweeps"); }
 
 fs::path find_observer_model(const std::string& name) {
     return find_bundled(name, "model of subjects", "experiments/models");

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus sweep on this machine, as scripts call it.
+#include "tests/support/sanitized.hpp"
+#include "tests/tools/background_run.hpp"
+#include "tests/tools/command/sweep/sweep_tests.hpp"
+
+#include <sqlite3.h>
+
+#include <csignal>
+#include <fstream>
+
+using namespace tactus::test;
+
+namespace {
+
+/// What `sqlite3 FILE QUERY` would print.
+std::string query(const fs::path& file, const std::string& text) {
+    sqlite3* base = nullptr;
+    REQUIRE(::sqlite3_open_v2(file.c_str(), &base, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK);
+    std::string out;
+    const auto add = [](void* to, int columns, char** values, char**) {
+        for (int c = 0; c < columns; ++c)
+            *static_cast<std::string*>(to) += std::string(c > 0 ? "|" : "") + (values[c] ? values[c] : "");
+        *static_cast<std::string*>(to) += "\n";
+        return 0;
+    };
+    char* message = nullptr;
+    const int code = ::sqlite3_exec(base, text.c_str(), add, &out, &message);
+    CAPTURE(message ? message : "");
+    CHECK(code == SQLITE_OK);
+    ::sqlite3_close(base);
+    return out;
+}
+
+std::string in(const Folder& folder, const std::string& name) { return (folder.path / name).string(); }
+
+}  // namespace
+
+TEST_CASE("a sweep runs every point once, and its table has levels, values and provenance", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points());
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 2");
+    CAPTURE(run.out, run.err);
+    REQUIRE(run.code == 0);
+    CHECK(run.out.find("200 of 200 points done, 0 failed, 0 to run") != std::string::npos);
+    CHECK(rows_in(folder.path / "a") == 200);
+    CHECK(query(folder.path / "a/results.sqlite", "select count(*), sum(value), sum(drawn) from results") ==
+          "200|2100|1100\n");
+    CHECK(query(folder.path / "a/results.sqlite",
+                "select level, seed, value, state from results where \"index\" = 200") == "20.0|10|20|done\n");
+    CHECK(query(folder.path / "a/results.sqlite",
+                "select count(*) from results join workers on worker = id where runner = 'local' and length(build) = "
+                "16 and "
+                "libc <> '' and vector <> '' and length(features) = 16") == "200\n");
+    CHECK(query(folder.path / "a/results.sqlite", "select unit from axes") == "N\n");
+    const std::string csv = slurp(folder.path / "a/results.csv");
+    CHECK(csv.starts_with("index,point,level [N],seed,state,value,drawn,output,reason,seconds [s],peak_mb"));
+    CHECK(std::ranges::count(csv, '\n') == 201);
+    // Kept files, by point.
+    std::size_t kept = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path / "a/files"))
+        kept += entry.path().filename() == "kept.txt";
+    CHECK(kept == 200);
+    // Nothing is run again.
+    const Outcome again = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --json");
+    CHECK(nlohmann::json::parse(again.out)["done"] == 200);
+    CHECK(rows_in(folder.path / "a") == 200);
+    // Points that another runner ran, too.
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "b") + " --jobs 1").code == 0);
+    CHECK(status_of(folder, "b").hash == status_of(folder, "a").hash);
+    CHECK(results_of(folder, "b") == results_of(folder, "a"));
+}
+
+TEST_CASE("a killed run continues where it was, and half a row counts for nothing", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points("sleep 0.01; "));
+    {
+        Run run(folder, file.string() + " -o " + in(folder, "a") + " --jobs 2", "sweep run");
+        REQUIRE(wait_for([&] { return rows_in(folder.path / "a") >= 20; }));
+    }  // SIGKILL
+    const std::size_t before = rows_in(folder.path / "a");
+    REQUIRE(before < 200);
+    for (const auto& entry : fs::directory_iterator(folder.path / "a/log"))
+        std::ofstream(entry.path(), std::ios::app) << "{\"point\":\"0123";
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 2");
+    CAPTURE(run.out, run.err);
+    CHECK(run.code == 0);
+    CHECK(status_of(folder, "a").done == 200);
+    CHECK(rows_in(folder.path / "a") == 200);
+}
+
+TEST_CASE("a worker that is killed is replaced, and its point is tried again", "[kernel]") {
+    const Folder folder;
+    // The first attempt of a point in ten kills its whole process group, the worker's.
+    const fs::path marks = folder.path / "marks";
+    fs::create_directories(marks);
+    const std::string kill = fmt::format(
+        "if [ $(($1 % 10)) = 0 ] && mkdir {}/$1-$2 2>/dev/null; then kill -KILL $PPID; fi; ", marks.string());
+    std::string text = two_hundred_points(kill);
+    text.replace(text.find("retries = 0"), 11, "retries = 1");
+    const fs::path file = folder.write("sweep.toml", text);
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 2");
+    CAPTURE(run.out, run.err);
+    CHECK(run.code == 0);
+    CHECK(query(folder.path / "a/results.sqlite", "select attempt, count(*) from results group by attempt") ==
+          "1|180\n2|20\n");
+    // Without a second attempt they are failures, with the reason.
+    fs::remove_all(marks);
+    fs::create_directories(marks);
+    const fs::path once = folder.write("once.toml", two_hundred_points(kill));
+    const Outcome failed = folder.tactus("sweep run " + once.string() + " -o " + in(folder, "b") + " --jobs 2");
+    CHECK(failed.code == 1);
+    CHECK(failed.out.starts_with("failed: 20 points: the worker was killed by signal 9"));
+    CHECK(status_of(folder, "b").failed == 20);
+    // Run again, they succeed.
+    CHECK(folder.tactus("sweep run " + once.string() + " -o " + in(folder, "b") + " --jobs 2").code == 0);
+    CHECK(results_of(folder, "b") == results_of(folder, "a"));
+}
+
+TEST_CASE("a point beyond its time or memory is ended, and the others go on", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", R"(format = 1
+title = "Limits"
+[axes.what]
+values = ["sleep 60", "true", "head -c 400M /dev/zero | tail"]
+[[step]]
+command = ["sh", "-c", "{what}"]
+[limits]
+time = "2 s"
+memory = "100 MB"
+retries = 0
+)");
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 1");
+    CAPTURE(run.out, run.err);
+    CHECK(run.code == 1);
+    CHECK(run.out.find("took longer than 2 s") != std::string::npos);
+    CHECK(run.out.find("used more than 100 MB") != std::string::npos);
+    CHECK(run.out.find("1 of 3 points done, 2 failed") != std::string::npos);
+}
+
+TEST_CASE("a full disk fails the points that met it, and a run with room completes the table", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points());
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "good") + " --jobs 1").code == 0);
+    for (const char* where : {"/files/", "/log/"}) {
+        CAPTURE(where);
+        const std::string name = where[1] == 'f' ? "files" : "log";
+        const std::string command = fmt::format(
+            "LD_PRELOAD={} FAILING_DISK_PATH={} FAILING_DISK_CALLS=write,open FAILING_DISK_FROM=30 {} sweep run {} -o "
+            "{} "
+            "--jobs 1 >{} 2>{}",
+            failing_disk(), where, tactus::test::command(), file.string(), in(folder, name), in(folder, "out"),
+            in(folder, "err"));
+        const int status = std::system(command.c_str());
+        CAPTURE(slurp(folder.path / "out"), slurp(folder.path / "err"));
+        REQUIRE(WIFEXITED(status));
+        CHECK(WEXITSTATUS(status) == (name == "log" ? 3 : 1));
+        const SweepStatus before = status_of(folder, name);
+        CHECK(before.done > 0);
+        CHECK(before.done < 200);
+        CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, name) + " --jobs 2").code == 0);
+        CHECK(results_of(folder, name) == results_of(folder, "good"));
+    }
+}
+
+TEST_CASE("runners on one folder run no point twice when they have shares, and agree when they have none", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points("sleep 0.005; "));
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --dry-run").code == 0);
+    {
+        Run first(folder, in(folder, "a") + " --share 1/2", "sweep work");
+        Run second(folder, in(folder, "a") + " --share 2/2", "sweep work");
+        CHECK(wait_for([&] { return rows_in(folder.path / "a") == 200; }));
+    }
+    CHECK(status_of(folder, "a").done == 200);
+    CHECK(status_of(folder, "a").repeated == 0);
+    // All of them twice: nothing was finished when the second began.
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "b") + " --dry-run").code == 0);
+    {
+        Run first(folder, in(folder, "b"), "sweep work");
+        Run second(folder, in(folder, "b"), "sweep work");
+        CHECK(wait_for([&] { return rows_in(folder.path / "b") >= 390; }));
+    }
+    const SweepStatus status = status_of(folder, "b");
+    CHECK(status.done == 200);
+    CHECK(status.repeated > 100);
+    CHECK(status.hash == status_of(folder, "a").hash);
+}
+
+TEST_CASE("a listing that is late makes points run twice, and changes no result", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points());
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a")).code == 0);
+    const std::string work =
+        fmt::format("LD_PRELOAD={} SLOW_LISTING_PATH=/log SLOW_LISTING_SECONDS=100 {} sweep work {} >{}",
+                    TACTUS_SLOW_LISTING, tactus::test::command(), in(folder, "a"), in(folder, "out"));
+    REQUIRE(std::system(work.c_str()) == 0);
+    CHECK(slurp(folder.path / "out") == "share 1/1: 200 points\n");
+    const SweepStatus status = status_of(folder, "a");
+    CHECK(status.done == 200);
+    CHECK(status.repeated == 200);
+    CHECK(folder.tactus("sweep status " + in(folder, "a") + " --tables").code == 0);
+    CHECK(std::ranges::count(results_of(folder, "a"), '\n') == 201);
+}
+
+TEST_CASE("two results of one point are an error that names both logs", "[kernel]") {
+    const Folder folder;
+    // A value that is not of its inputs.
+    const fs::path clock = folder.write("clock.toml",
+                                        "format = 1\ntitle = \"Clock\"\n[[step]]\ncommand = [\"sh\", \"-c\", "
+                                        "'echo \"{{\\\"t\\\": 1$(date +%N)}}\"']\nvalues = {time = \"/t\"}\n");
+    CHECK(folder.tactus("sweep run " + clock.string() + " -o " + in(folder, "a")).code == 0);
+    for (const auto& entry : fs::directory_iterator(folder.path / "a/log"))
+        fs::rename(entry.path(), folder.path / "first.jsonl");
+    CHECK(folder.tactus("sweep run " + clock.string() + " -o " + in(folder, "a")).code == 0);
+    fs::rename(folder.path / "first.jsonl", folder.path / "a/log/first.jsonl");
+    const Outcome status = folder.tactus("sweep status " + in(folder, "a"));
+    CHECK(status.code == 1);
+    CHECK(status.out.find("conflict: point 1") != std::string::npos);
+    CHECK(status.out.find("first.jsonl") != std::string::npos);
+    CHECK(status.out.find("depends on more than its inputs") != std::string::npos);
+    CHECK(folder.tactus("sweep report " + in(folder, "a")).code == 2);
+    // A fresh process finds the same.
+    fs::remove(folder.path / "a/log/first.jsonl");
+    const Outcome verify = folder.tactus("sweep verify " + in(folder, "a") + " --sample 100%");
+    CHECK(verify.code == 1);
+    CHECK(verify.out.find("1 different") != std::string::npos);
+}
+
+TEST_CASE("resident renders have the bits of fresh processes", "[slow]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", R"(format = 1
+title = "Touch"
+[inputs]
+patch = "library:patches/touch-sphere.toml"
+[axes.stiffness]
+unit = "N/mm"
+values = [0.5, 1]
+[axes.diameter]
+unit = "mm"
+values = [40, 50]
+[[step]]
+tactus = ["render", "{inputs.patch}", "--set", "coupling.stiffness={stiffness}", "--set", "ball.diameter={diameter}", "--seconds", "0.1", "-o", "{out}/run", "--json"]
+values = {hash = "/output_hash"}
+files = ["run/force.csv"]
+)");
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 1");
+    CAPTURE(run.out, run.err);
+    REQUIRE(run.code == 0);
+    std::set<std::string> hashes;
+    std::istringstream lines(query(folder.path / "a/results.sqlite", "select hash from results"));
+    for (std::string line; std::getline(lines, line);) hashes.insert(line);
+    CHECK(hashes.size() == 4);
+    const Outcome verify = folder.tactus("sweep verify " + in(folder, "a") + " --sample 100%");
+    CAPTURE(verify.out, verify.err);
+    CHECK(verify.code == 0);
+    CHECK(verify.out == "4 points run again: 4 equal, 0 different\n");
+    const std::string plain =
+        folder
+            .tactus(
+                "render touch-sphere --set 'coupling.stiffness=0.5 N/mm' --set 'ball.diameter=40 mm' "
+                "--seconds 0.1 --json -o " +
+                in(folder, "plain"))
+            .out;
+    CHECK(hashes.contains(nlohmann::json::parse(plain)["output_hash"].get<std::string>()));
+}
+
+TEST_CASE("rows of another build are not comparable when they differ", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml",
+                                       "format = 1\ntitle = \"Clock\"\n[[step]]\ncommand = [\"sh\", \"-c\", "
+                                       "'echo \"{{\\\"t\\\": 1$(date +%N)}}\"']\nvalues = {time = \"/t\"}\n");
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a")).code == 0);
+    for (const auto& entry : fs::directory_iterator(folder.path / "a/log")) {
+        std::string text = slurp(entry.path());
+        const std::size_t at = text.find("\"libc\":\"");
+        REQUIRE(at != std::string::npos);
+        text.replace(at + 8, 1, "1");
+        std::ofstream(entry.path(), std::ios::binary) << text;
+    }
+    const Outcome verify = folder.tactus("sweep verify " + in(folder, "a"));
+    CHECK(verify.code == 0);
+    CHECK(verify.out == "1 point run again: 0 equal, 0 different, 1 not comparable: made with another libc\n");
+}
+
+TEST_CASE("plots and the report show a sweep, failures first", "[kernel]") {
+    const Folder folder;
+    const fs::path file =
+        folder.write("sweep.toml", two_hundred_points("[ $1 != 7 ] || (echo no seven >&2; exit 3) || exit 3; ") +
+                                       R"([[figure]]
+name = "line"
+value = "value"
+x = "level"
+)");
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 2");
+    CAPTURE(run.out, run.err);
+    CHECK(run.code == 1);
+    CHECK(run.out.starts_with("failed: 10 points: exit code 3: no seven\n"));
+    CHECK(folder.tactus("sweep plot " + in(folder, "a") + " -o " + in(folder, "line.svg")).code == 0);
+    CHECK(slurp(folder.path / "line.svg").find("level, N") != std::string::npos);
+    CHECK(folder
+              .tactus("sweep plot " + in(folder, "a") + " --value value --minus drawn --x level -o " +
+                      in(folder, "b.svg"))
+              .code == 0);
+    const Outcome wrong =
+        folder.tactus("sweep plot " + in(folder, "a") + " --value vlaue --x level -o " + in(folder, "c.svg"));
+    CHECK(wrong.code == 2);
+    CHECK(wrong.err.find("did you mean 'value'") != std::string::npos);
+    CHECK(folder.tactus("sweep report " + in(folder, "a")).code == 0);
+    const std::string page = slurp(folder.path / "a/report.html");
+    CHECK(page.find("<h2>Failures</h2>") < page.find("<h2>Axes</h2>"));
+    CHECK(page.find("no seven") != std::string::npos);
+    CHECK(page.find("<svg") != std::string::npos);
+}
+
+TEST_CASE("a folder follows its sweep file, and refuses inputs that have changed", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points());
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 2").code == 0);
+    std::string more = two_hundred_points();
+    more.replace(more.find("count = 10"), 10, "count = 11");
+    folder.write("sweep.toml", more);
+    CHECK(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 2").code == 0);
+    CHECK(status_of(folder, "a").points == 220);
+    CHECK(rows_in(folder.path / "a") == 220);
+    // Inputs.
+    folder.write("input.txt", "1");
+    const fs::path other = folder.write("other.toml",
+                                        "format = 1\ntitle = \"Input\"\n[inputs]\nname = \"input.txt\"\n[[step]]\n"
+                                        "command = [\"cat\", \"{inputs.name}\"]\n");
+    CHECK(folder.tactus("sweep run " + other.string() + " -o " + in(folder, "b")).code == 0);
+    folder.write("input.txt", "22");
+    const Outcome work = folder.tactus("sweep work " + in(folder, "b"));
+    CHECK(work.code == 2);
+    CHECK(work.err.find("have changed since it was prepared") != std::string::npos);
+    CHECK(folder.tactus("sweep run " + other.string() + " -o " + in(folder, "b")).code == 0);
+    CHECK(status_of(folder, "b").done == 1);
+    CHECK(rows_in(folder.path / "b") == 2);
+    // A folder of something else.
+    fs::create_directories(folder.path / "c");
+    folder.write("c/mine.txt", "mine");
+    CHECK(folder.tactus("sweep run " + other.string() + " -o " + in(folder, "c")).code == 2);
+    CHECK(folder.tactus("sweep status " + in(folder, "c")).code == 2);
+    CHECK(folder.tactus("sweep work " + in(folder, "b") + " --share 3/2").code == 2);
+}
+
+TEST_CASE("a Makefile runs a sweep", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points());
+    const Outcome run =
+        folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --runner make --chunk 40");
+    CHECK(run.out.find("with 5 targets") != std::string::npos);
+    if (std::system("make --version >/dev/null 2>&1") != 0) return;
+    CHECK(std::system(fmt::format("make -s -j 2 -k -C {} >{} 2>&1", in(folder, "a"), in(folder, "make.out")).c_str()) ==
+          0);
+    CAPTURE(slurp(folder.path / "make.out"));
+    CHECK(status_of(folder, "a").done == 200);
+    CHECK(status_of(folder, "a").repeated == 0);
+}
