@@ -26,8 +26,8 @@ inline bool is_jump(const Pose& from, const Pose& to, double reach, double dt) n
 /// True if a ball goes straight from one place to the other without bone in its way; where it touches bone it may leave it.
 /// Steps by the distance to the bone (sphere tracing, Hart 1996): a hand may move a tool by many voxels in one tick, past
 /// the corner of a bone. `step`: m, the least.
-inline bool is_way_free(const volume::BoneSnapshot& bone, const Vec3& from, const Vec3& to, double radius,
-                        double step) noexcept {
+template <class Field>
+bool is_way_free(const Field& bone, const Vec3& from, const Vec3& to, double radius, double step) noexcept {
     constexpr int max_steps = 48;
     constexpr double rounding = 1e-9;  // m
     const double way = glm::length(to - from);

@@ -11,13 +11,16 @@
 namespace tactus::saw {
 
 SawBlade::SawBlade(const SawShape& shape, double stiffness)
-    : shape_(shape), teeth_(shape, stiffness), body_(blade_body(shape, stiffness), stiffness, shape.kerf) {
+    : shape_(shape),
+      teeth_(shape, stiffness),
+      body_(blade_body(shape, stiffness), stiffness, shape.kerf),
+      front_(blade_front(shape, stiffness), stiffness, 0.0, false) {
     // Largest curvature of ½‖u‖₈²: as in contact::blade_contact, whose 44 teeth have 4.
     tooth_spring_ = stiffness / (4.0 * std::sqrt(std::sqrt(static_cast<double>(teeth_.teeth().size()) / 44.0)));
 }
 
-SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive,
-                          const CuttingLaw& law) noexcept {
+SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive, const CuttingLaw& law,
+                          const volume::BoneSnapshot* guide) noexcept {
     SawContact contact;
     if (!is_valid(pose) || glm::length(pose.position) > 1e3 || !(drive.dt > 0.0)) {
         teeth_.forget();
@@ -30,35 +33,44 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
     if (jumped) {
         teeth_.carry(pose);
         body_.carry(pose);
+        if (guide) front_.carry(pose);
     }
     const bool was_waiting = hold_.state() == HoldState::waiting;
-    hold_.tick(drive.dt, drive.release || jumped, stuck_,
-               [&] { return teeth_.is_free(bone, pose) && body_.is_free(bone, pose); });
+    hold_.tick(drive.dt, drive.release || jumped, stuck_, [&] {
+        return teeth_.is_free(bone, pose) && body_.is_free({bone, guide}, pose) &&
+               (!guide || front_.is_free(*guide, pose));
+    });
     last_ = pose;
     contact.state = hold_.state();
     if (hold_.state() == HoldState::engaged) {
         if (was_waiting) {
             teeth_.seat(pose);
             body_.seat(pose);
+            front_.seat(pose);
         }
         teeth_.follow(bone, pose, drive);
         contact.feed = teeth_.cut(law, drive, tooth_spring_) / drive.dt;
         teeth_.settle();
-        body_.follow(bone, pose, drive.running);
+        body_.follow({bone, guide}, pose, drive.running);
+        if (guide) front_.follow(*guide, pose, drive.running);
     } else if (!was_waiting) {
         teeth_.release(pose, hold_.kept());
         body_.release(pose, hold_.kept());
+        if (guide) front_.release(pose, hold_.kept());
     } else {
         stuck_ = false;
         return contact;
     }
     const Mat3 axes(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
     push_teeth(axes, pose.position, law, drive.running, contact);
-    const ToolBody::Sum body = body_.push(pose.position);
-    contact.wrench = contact.wrench + body.wrench;
-    contact.magnitudes += body.magnitudes;
-    contact.lag = std::max(contact.lag, body.lag);
-    contact.count += body.count;
+    const auto add = [&](const ToolBody::Sum& body) {
+        contact.wrench = contact.wrench + body.wrench;
+        contact.magnitudes += body.magnitudes;
+        contact.lag = std::max(contact.lag, body.lag);
+        contact.count += body.count;
+    };
+    add(body_.push(pose.position));
+    if (guide) add(front_.push(pose.position));
     contact.side = std::abs(glm::dot(contact.wrench.force, axes[2]));
     stuck_ = contact.lag >= max_lag || glm::dot(contact.wrench.force, axes[1]) > 0.0 ||
              (contact.count > 0 && drive.rendered < 1.0);

@@ -21,6 +21,32 @@ constexpr double spacing = 1e-3;  // m
 constexpr double clear_of_teeth = 1.6e-3;  // m
 constexpr std::size_t tile_balls = 9;
 constexpr int max_slides = 10;
+constexpr double guide_slack = 0.03e-3;  // m by which balls are thinner in a guide, whose slot holds the blade
+
+/// Bone and guide as a ball of the radius that it has in bone meets them.
+struct Both {
+    const volume::BoneSnapshot& bone;
+    const volume::BoneSnapshot& guide;
+    double more = 0.0;  // m of radius in the guide beyond that in bone
+
+    double value(const Vec3& p) const noexcept { return std::min(bone.value(p), guide.value(p) - more); }
+    volume::Sample sample(const Vec3& p) const noexcept {
+        volume::Sample of_guide = guide.sample(p);
+        of_guide.value -= more;
+        const volume::Sample of_bone = bone.sample(p);
+        return of_bone.value <= of_guide.value ? of_bone : of_guide;
+    }
+};
+
+double nearest(const Solids& solids, const Vec3& p) noexcept {
+    const double of_bone = solids.bone.value(p);
+    return solids.guide ? std::min(of_bone, solids.guide->value(p)) : of_bone;
+}
+
+double coarsest(const volume::BoneSnapshot& bone) noexcept {
+    const Vec3& size = bone.layout().spacing;
+    return std::max({size.x, size.y, size.z, 1e-6});
+}
 
 }  // namespace
 
@@ -54,6 +80,20 @@ std::vector<BodyPoint> blade_body(const SawShape& shape, double stiffness) {
     return points;
 }
 
+std::vector<BodyPoint> blade_front(const SawShape& shape, double stiffness) {
+    std::vector<BodyPoint> points;
+    const double radius = 0.5 * shape.thickness, width = std::max(shape.length - shape.thickness, 0.0);
+    const auto columns = static_cast<std::size_t>(std::ceil(width / spacing)) + 1;
+    for (std::size_t column = 0; column < columns; ++column) {
+        const double x =
+            columns > 1 ? width * (static_cast<double>(column) / static_cast<double>(columns - 1) - 0.5) : 0.0;
+        const Vec3 local(x, -shape.behind(x) - radius, 0.0);
+        const double blade = lateral_stiffness(shape, local);
+        points.push_back({local, radius, radius, blade / (blade + stiffness)});
+    }
+    return points;
+}
+
 std::vector<BodyPoint> shaft_body(double ball, double radius, double length) {
     std::vector<BodyPoint> points;
     const auto count = static_cast<std::size_t>(std::ceil(length / spacing));
@@ -65,7 +105,7 @@ std::vector<BodyPoint> shaft_body(double ball, double radius, double length) {
     return points;
 }
 
-ToolBody::ToolBody(std::vector<BodyPoint> points, double stiffness, double kerf)
+ToolBody::ToolBody(std::vector<BodyPoint> points, double stiffness, double kerf, bool is_pinched)
     : points_(std::move(points)), kerf_(kerf) {
     squares_.reserve(points_.size());
     held_.reserve(points_.size());
@@ -78,9 +118,11 @@ ToolBody::ToolBody(std::vector<BodyPoint> points, double stiffness, double kerf)
         tiles_.push_back(tile);
     }
     for (const BodyPoint& p : points_) reach_ = std::max(reach_, glm::length(p.local));
-    // Largest curvature of ½‖u‖₈² of n lengths that walls can pinch from both sides: 7·n^¼, 22 for 88 points.
+    // Largest curvature of ½‖u‖₈² of n lengths: 4 for 44 points, and 7·n^¼ if walls can pinch them from both sides, 22 for
+    // 88 points.
     const double count = std::max(static_cast<double>(points_.size()), 1.0);
-    spring_ = stiffness / (22.0 * std::sqrt(std::sqrt(count / 88.0)));
+    spring_ = is_pinched ? stiffness / (22.0 * std::sqrt(std::sqrt(count / 88.0)))
+                         : stiffness / (4.0 * std::sqrt(std::sqrt(count / 44.0)));
 }
 
 void ToolBody::set_pose(const Pose& pose) noexcept {
@@ -103,13 +145,16 @@ void ToolBody::fit_to(double voxel) noexcept {
     for (BodyPoint& p : points_) p.radius = std::min(p.full, std::max(0.5 * kerf_ - cut_off * voxel, 0.5 * p.full));
 }
 
-bool ToolBody::is_free(const volume::BoneSnapshot& bone, const Pose& pose) noexcept {
-    const Vec3& size = bone.layout().spacing;
-    fit_to(std::max({size.x, size.y, size.z, 1e-6}));
+bool ToolBody::is_free(const Solids& solids, const Pose& pose) noexcept {
+    fit_to(coarsest(solids.bone));
     for (const Tile& tile : tiles_) {
-        if (bone.value(pose.apply(tile.centre)) > tile.reach) continue;
-        for (std::size_t n = tile.first; n < tile.first + tile.count; ++n)
-            if (bone.value(pose.apply(points_[n].local)) < points_[n].radius) return false;
+        if (nearest(solids, pose.apply(tile.centre)) > tile.reach) continue;
+        for (std::size_t n = tile.first; n < tile.first + tile.count; ++n) {
+            const BodyPoint& p = points_[n];
+            const Vec3 at = pose.apply(p.local);
+            if (solids.bone.value(at) < p.radius) return false;
+            if (solids.guide && solids.guide->value(at) < std::max(0.0, p.full - guide_slack)) return false;
+        }
     }
     return true;
 }
@@ -152,9 +197,8 @@ void ToolBody::release(const Pose& pose, double kept) noexcept {
     for (Tile& tile : tiles_) tile.is_free = false;
 }
 
-void ToolBody::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool running) noexcept {
-    const Vec3& size = bone.layout().spacing;
-    const double voxel = std::max({size.x, size.y, size.z, 1e-6});
+void ToolBody::follow(const Solids& solids, const Pose& pose, bool running) noexcept {
+    const double voxel = coarsest(solids.bone);
     fit_to(voxel);
     const Vec3 from = origin_;
     const Mat3 before = axes_;
@@ -166,7 +210,7 @@ void ToolBody::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool r
             // The way of a ball is at most that of the centre and the turn about it.
             double way = glm::length(centre - (from + before * tile.centre));
             for (const int axis : {0, 1, 2}) way += tile.reach * glm::length(axes_[axis] - before[axis]);
-            if (bone.value(centre) > tile.reach + way) {
+            if (nearest(solids, centre) > tile.reach + way) {
                 tile.is_near = false;
                 continue;
             }
@@ -180,21 +224,13 @@ void ToolBody::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool r
         for (std::size_t n = tile.first; n < tile.first + tile.count; ++n) {
             BodyPoint& p = points_[n];
             p.target = place(p.local);
-            const double distance = glm::length(p.target - p.at);
-            if (bone.value(p.at) - p.radius > distance) {
-                p.at = p.target;
-                continue;
+            const Vec3 last = from + before * p.local;
+            if (solids.guide) {
+                const double in_guide = std::max(0.0, p.full - guide_slack);
+                step(Both{solids.bone, *solids.guide, in_guide - p.radius}, p, last, voxel, running);
+            } else {
+                step(solids.bone, p, last, voxel, running);
             }
-            // A slide ends after some voxels: too few for a fast hand.
-            if (glm::length(p.target - (from + before * p.local)) > voxel &&
-                is_way_free(bone, p.at, p.target, p.radius, 0.25 * voxel)) {
-                p.at = p.target;
-                continue;
-            }
-            slide(bone, p, voxel, running);
-            unhook(bone, p, voxel);
-            // What rounding leaves of a lag is no contact.
-            if (glm::length(p.target - p.at) < 1e-8) p.at = p.target;
             if (p.at == p.target) continue;
             tile.is_free = false;
             held_.push_back(static_cast<std::uint32_t>(n));
@@ -202,9 +238,29 @@ void ToolBody::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool r
     }
 }
 
+/// From where the last tick left it; `last`: where the tool had it then.
+template <class Field>
+void ToolBody::step(const Field& field, BodyPoint& p, const Vec3& last, double voxel, bool running) const noexcept {
+    const double distance = glm::length(p.target - p.at);
+    if (field.value(p.at) - p.radius > distance) {
+        p.at = p.target;
+        return;
+    }
+    // A slide ends after some voxels: too few for a fast hand.
+    if (glm::length(p.target - last) > voxel && is_way_free(field, p.at, p.target, p.radius, 0.25 * voxel)) {
+        p.at = p.target;
+        return;
+    }
+    slide(field, p, voxel, running);
+    unhook(field, p, voxel);
+    // What rounding leaves of a lag is no contact.
+    if (glm::length(p.target - p.at) < 1e-8) p.at = p.target;
+}
+
 /// Bone does not hold a tool back by its roughness: a ball that would hook in on the way out sinks in by a part of a voxel,
 /// and the points that guide a blade in its kerf as far as they must.
-void ToolBody::unhook(const volume::BoneSnapshot& bone, BodyPoint& p, double voxel) const noexcept {
+template <class Field>
+void ToolBody::unhook(const Field& field, BodyPoint& p, double voxel) const noexcept {
     const double back = glm::dot(p.target - p.at, axes_[1]);
     if (back >= 0.0) return;
     if (p.radius == 0.0) {
@@ -214,8 +270,8 @@ void ToolBody::unhook(const volume::BoneSnapshot& bone, BodyPoint& p, double vox
     const double rough = p.radius - 0.25 * voxel;
     Vec3 to = p.at + axes_[1] * back;
     for (int halving = 0; halving < 4; ++halving) {
-        const double there = bone.value(to);
-        if (there >= rough || there >= bone.value(p.at)) {
+        const double there = field.value(to);
+        if (there >= rough || there >= field.value(p.at)) {
             p.at = to;
             return;
         }
@@ -223,13 +279,14 @@ void ToolBody::unhook(const volume::BoneSnapshot& bone, BodyPoint& p, double vox
     }
 }
 
-void ToolBody::slide(const volume::BoneSnapshot& bone, BodyPoint& p, double voxel, bool running) const noexcept {
+template <class Field>
+void ToolBody::slide(const Field& field, BodyPoint& p, double voxel, bool running) const noexcept {
     const double skin = 0.01 * voxel;
     for (int move = 0; move < max_slides; ++move) {
         const Vec3 lag = p.target - p.at;
         const double distance = glm::length(lag);
         if (distance < 1e-9) return;
-        const volume::Sample here = bone.sample(p.at);
+        const volume::Sample here = field.sample(p.at);
         const double gap = here.value - p.radius;
         const double slope = glm::length(here.gradient);
         if (gap > skin || !(slope > 0.1)) {
@@ -248,9 +305,9 @@ void ToolBody::slide(const volume::BoneSnapshot& bone, BodyPoint& p, double voxe
         Vec3 next = p.at + along * (std::min(way - held, 0.5 * voxel) / way);
         // Where the surface rises, up to it.
         const double low = std::min(gap, skin);
-        const double sunk = low - (bone.value(next) - p.radius);
+        const double sunk = low - (field.value(next) - p.radius);
         if (sunk > 0.0) next += normal * sunk;
-        if (bone.value(next) - p.radius < low - 1e-9 ||
+        if (field.value(next) - p.radius < low - 1e-9 ||
             square(p.target - next, p.bending) >= square(p.target - p.at, p.bending))
             return;
         p.at = next;

@@ -22,10 +22,22 @@ struct BodyPoint {
     Vec3 at{0.0, 0.0, 0.0}, target{0.0, 0.0, 0.0};  ///< bone's frame, m
 };
 
+/// What a body meets: bone, and a guide that nothing cuts. Both in one frame.
+struct Solids {
+    const volume::BoneSnapshot& bone;
+    const volume::BoneSnapshot* guide = nullptr;  ///< null: none
+
+    Solids(const volume::BoneSnapshot& bone_, const volume::BoneSnapshot* guide_ = nullptr)
+        : bone(bone_), guide(guide_) {}
+};
+
 /// The balls of a blade: two rows of points on its faces near the teeth, which guide it in its kerf (thesis 6.2.2), and a
 /// grid of balls as thick as the blade over all of it, near enough together that no edge or corner of bone gets between
 /// them by 0.5 mm.
 std::vector<BodyPoint> blade_body(const SawShape& shape, double stiffness);
+
+/// A row of balls at the teeth, for what teeth do not cut.
+std::vector<BodyPoint> blade_front(const SawShape& shape, double stiffness);
 
 /// A straight shaft of `length` m behind a burr of `ball` m radius, along −y.
 std::vector<BodyPoint> shaft_body(double ball, double radius, double length);
@@ -38,13 +50,13 @@ class ToolBody {
 public:
     ToolBody() = default;
     /// `stiffness`: N/m, upper bound of what the hand feels. `kerf`: m, the width that the tool cuts for itself; 0: its body
-    /// needs none. Allocates.
-    ToolBody(std::vector<BodyPoint> points, double stiffness, double kerf = 0.0);
+    /// needs none. `is_pinched`: walls may hold it from both sides, so that each spring is softer. Allocates.
+    ToolBody(std::vector<BodyPoint> points, double stiffness, double kerf = 0.0, bool is_pinched = true);
 
-    bool is_free(const volume::BoneSnapshot& bone, const Pose& pose) noexcept;
+    bool is_free(const Solids& solids, const Pose& pose) noexcept;
     /// Every ball rests where the tool has it.
     void seat(const Pose& pose) noexcept;
-    void follow(const volume::BoneSnapshot& bone, const Pose& pose, bool running) noexcept;
+    void follow(const Solids& solids, const Pose& pose, bool running) noexcept;
     /// The tool jumped: the balls go with it, with their lags.
     void carry(const Pose& pose) noexcept;
     /// The balls approach their targets, whatever lies between: `kept` of their lags stays.
@@ -75,8 +87,12 @@ private:
     double square(const Vec3& lag, double bending) const noexcept;
     void fit_to(double voxel) noexcept;
     void bring_up(Tile& tile) noexcept;
-    void slide(const volume::BoneSnapshot& bone, BodyPoint& p, double voxel, bool running) const noexcept;
-    void unhook(const volume::BoneSnapshot& bone, BodyPoint& p, double voxel) const noexcept;
+    template <class Field>
+    void slide(const Field& field, BodyPoint& p, double voxel, bool running) const noexcept;
+    template <class Field>
+    void unhook(const Field& field, BodyPoint& p, double voxel) const noexcept;
+    template <class Field>
+    void step(const Field& field, BodyPoint& p, const Vec3& last, double voxel, bool running) const noexcept;
 
     std::vector<BodyPoint> points_;
     std::vector<Tile> tiles_;

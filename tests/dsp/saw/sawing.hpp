@@ -63,6 +63,7 @@ struct Sawing {
     carve::Carver carver;
     std::vector<carve::CutFront> path;
     volume::BoneSnapshot read = bone.current();  ///< what the blade sees: one carving tick old
+    const volume::BoneSnapshot* guide = nullptr;  ///< that nothing cuts
     double removed = 0.0;  ///< m³
     std::int64_t ticks = 0, carved = 0;
 
@@ -77,7 +78,7 @@ struct Sawing {
     }
 
     saw::SawContact step(const Pose& pose) {
-        const saw::SawContact contact = blade.step(read, pose, drive, law);
+        const saw::SawContact contact = blade.step(read, pose, drive, law, guide);
         carve::CutFront front;
         blade.teeth().fill(front, pose, drive.running);
         path.push_back(front);

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+// A blade in the slot of a cutting guide.
+#include "dsp/saw/guide_slot.hpp"
+
+#include "dsp/core/constants.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/core/rotation.hpp"
+#include "dsp/simulate/script.hpp"
+#include "dsp/training/removed.hpp"
+#include "tests/dsp/saw/sawing.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+constexpr double clearance = 0.25 * mm, depth = 15.0 * mm, kerf = 1.0 * mm;
+const double play = std::atan(2.0 * clearance / depth);
+
+saw::SawShape sagittal() {
+    saw::SawShape shape;
+    shape.kind = saw::SawKind::sagittal;
+    shape.length = 12.0 * mm;
+    shape.height = 40.0 * mm;
+    shape.kerf = kerf;
+    return shape;
+}
+
+/// Above a bone whose top is z = 0, for a cut in the plane y = 0, from 0.5 mm above the bone on.
+saw::GuideSlot slot_above() {
+    saw::GuideSlot slot;
+    slot.frame = {Vec3(0.0), teeth_down};
+    slot.low = -10.0 * mm, slot.high = 10.0 * mm;
+    slot.top = -0.5 * mm - depth, slot.bottom = -0.5 * mm;
+    slot.wall = -0.5 * kerf;
+    slot.other_wall = slot.wall + kerf + 2.0 * clearance;
+    return slot;
+}
+
+double box(const Vec3& p, const Vec3& low, const Vec3& high) {
+    const Vec3 q = glm::max(low - p, p - high);
+    return glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+}
+
+/// The guide of that slot: walls of 3 mm, closed at both ends.
+std::unique_ptr<volume::BoneEditor> guide_above() {
+    const Vec3 low(-13.0 * mm, -4.0 * mm, 0.5 * mm), high(13.0 * mm, 4.5 * mm, 15.5 * mm);
+    // The normal of the cut is y: stroke x, feed -z.
+    return bone_where({.low = low, .high = high, .voxel = 0.3 * mm}, [=](const Vec3& p) {
+        const double hole = box(p, Vec3(-10.0 * mm, -0.5 * mm, -1.0), Vec3(10.0 * mm, 1.0 * mm, 1.0));
+        return std::max(box(p, low, high), -hole);
+    });
+}
+
+/// Greatest distance by which a blade as thick as its kerf passes the walls, m; negative: it is between them.
+double beyond_walls(const saw::GuideSlot& slot, const saw::SawShape& shape, const Pose& pose) {
+    double most = -1.0;
+    const Pose local = slot.frame.inverse() * pose;
+    for (int i = 0; i <= 60; ++i)
+        for (int j = 0; j <= 200; ++j) {
+            const Vec3 p = local.apply(Vec3(shape.length * (i / 60.0 - 0.5), -shape.height * j / 200.0, 0.0));
+            if (p.x < slot.low || p.x > slot.high || p.y < slot.top || p.y > slot.bottom) continue;
+            most = std::max({most, slot.wall + 0.5 * kerf - p.z, p.z + 0.5 * kerf - slot.other_wall});
+        }
+    return most;
+}
+
+struct Hand {
+    const char* name;
+    double tilt = 0.0, shake = 0.0;  // rad, m
+};
+
+struct Result {
+    double offset = 0.0, angle = 0.0, max = 0.0, force = 0.0, work = 0.0, bound = 0.0, jump = 0.0;
+};
+
+/// Saws through a plate of 4 mm with or without the guide.
+Result saw_with(const Hand& hand, bool guided) {
+    const BoneBox plate{.low = {-6.0 * mm, -4.0 * mm, -4.0 * mm}, .high = {6.0 * mm, 4.0 * mm, 0.0}};
+    const auto bone = bone_block(plate), guide = guide_above();
+    const volume::Grid before = volume::to_grid(bone->current());
+    const volume::BoneSnapshot solid = guide->current();
+    Sawing sawing(*bone, 1000.0, 40e3, sagittal());
+    sawing.law = saw::CuttingLaw{}.sharpened(6.0);
+    if (guided) sawing.guide = &solid;
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    saw::SlotHold hold(sagittal(), {.stiffness = 10e3, .thickness = kerf});
+    const Quat straight = teeth_down, tilted = rotation_by(Vec3(hand.tilt, 0.0, 0.0)) * teeth_down;
+    // In over the mouth, straight; then the hand tilts.
+    simulate::ScriptOperator moves({{0.0, {Vec3(0.0, 0.0, 18.0 * mm), straight}},
+                                    {0.5, {Vec3(0.0, 0.0, 1.0 * mm), straight}},
+                                    {0.8, {Vec3(0.0, 0.0, 1.0 * mm), tilted}},
+                                    {4.3, {Vec3(0.0, 0.0, -8.0 * mm), tilted}},
+                                    {4.6, {Vec3(0.0, 0.0, -8.0 * mm), straight}},
+                                    {5.2, {Vec3(0.0, 0.0, 18.0 * mm), straight}}},
+                                   {});
+    simulate::Hand held;
+    held.dynamics.stiffness = 2e3;
+    held.dynamics.damping = 30.0;
+    held.pose = moves.start();
+    const auto intend = [&](double h, const Wrench& force, const Pose& at) {
+        simulate::Intention wanted = moves(h, force, at);
+        const double t = moves.time();
+        // Slowly, so that the bone is met at an extreme.
+        if (t > 0.6 && t < 4.6) wanted.pose.position.y += hand.shake * std::sin(2.0 * M_PI * 0.5 * (t - 0.6));
+        // Strokes of 2 mm, to and fro.
+        wanted.pose.position.x += 2.0 * mm * std::sin(2.0 * M_PI * t);
+        return wanted;
+    };
+    Wrench felt;
+    Vec3 last_of_slot(0.0);
+    Result result;
+    for (int n = 0; n < 5300; ++n) {
+        const Pose last = held.pose;
+        simulate::advance(held, intend, felt, 1e-3);
+        const Pose at = guided ? hold.follow(slots, held.pose, 1e-3) : held.pose;
+        const saw::SawContact contact = sawing.step(at);
+        const Wrench now = guided ? hold.on_hand(contact.wrench) : contact.wrench;
+        const Vec3 way = held.pose.position - last.position,
+                   turn = rotation_between(last.orientation, held.pose.orientation);
+        result.work += glm::dot(felt.force, way) + glm::dot(felt.torque, turn);
+        result.bound += 0.5 * (std::abs(glm::dot(now.force - felt.force, way)) +
+                               std::abs(glm::dot(now.torque - felt.torque, turn)));
+        // The part of the slot alone: bone that breaks has jumps of its own.
+        const Vec3 of_slot = now.force - contact.wrench.force;
+        result.jump = std::max(result.jump, glm::length(of_slot - last_of_slot));
+        last_of_slot = of_slot;
+        result.force = std::max(result.force, glm::length(now.force));
+        felt = now;
+    }
+    const volume::Grid after = volume::to_grid(bone->publish());
+    training::PlannedCut cut;  // feed -z, stroke x, normal y
+    cut.depth = 4.0 * mm;
+    const auto plane = training::fit_cut_plane({before, after}, cut, kerf);
+    REQUIRE(plane);
+    REQUIRE(plane->angle);
+    result.angle = *plane->angle;
+    result.max = plane->max;
+    for (const training::CutPoint& p : plane->points)
+        result.offset += p.offset / static_cast<double>(plane->points.size());
+    CHECK(result.work <= 1.02 * result.bound + 1e-6);
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("a blade that a slot holds never passes its walls, wherever the hand goes") {
+    const saw::SawShape shape = sagittal();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    const Random random{7};
+    int touched = 0;
+    for (std::uint64_t run = 0; run < 20; ++run) {
+        saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+        const auto wave = [&](std::uint64_t n, double t) {
+            return random.normal(100 * run + n) * std::sin((1.0 + 3.0 * random.uniform(100 * run + n + 20)) * t);
+        };
+        for (int n = 0; n <= 3000; ++n) {
+            const double t = n * 1e-3, in = std::min(1.0, t / 0.4);
+            const Pose hand{Vec3(4.0 * mm * wave(1, t), 0.25 * mm + 2.0 * mm * in * wave(2, t),
+                                 18.0 * mm - 18.0 * mm * in + 3.0 * mm * wave(3, t)),
+                            rotation_by(in * 0.2 * Vec3(wave(4, t), wave(5, t), wave(6, t))) * teeth_down};
+            const Pose at = hold.follow(slots, hand, 1e-3);
+            REQUIRE(is_valid(at));
+            if (hold.slot() < 0) continue;
+            // 0.3 mm: room that a blade keeps which missed the slot by so much at its mouth.
+            REQUIRE(beyond_walls(slots[0], shape, at) < 0.31 * mm);
+            touched += hold.force() > 0.1;
+            // In the plane of the slot the hand is free.
+            REQUIRE(std::abs((at.position - hand.position).x) < 4.0 * mm);
+        }
+    }
+    CHECK(touched > 1000);
+}
+
+TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
+    const saw::SawShape shape = sagittal();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    const Random random{11};
+    for (std::uint64_t run = 0; run < 30; ++run) {
+        saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+        double work = 0.0, bound = 0.0, most = 0.0, jump = 0.0;
+        Pose last;
+        Wrench felt;
+        constexpr int ticks = 4000;
+        for (int n = 0; n <= ticks; ++n) {
+            const double s = static_cast<double>(n) / ticks;
+            const double in = std::clamp(std::min(s, 1.0 - s) / 0.2, 0.0, 1.0), aside = in * in * (3.0 - 2.0 * in);
+            double v[6] = {};
+            for (std::uint64_t axis = 0; axis < 6; ++axis)
+                for (std::uint64_t h = 1; h <= 3; ++h)
+                    v[axis] += random.normal(100 * run + 10 * axis + h) / static_cast<double>(h) *
+                               std::sin(2.0 * M_PI * static_cast<double>(h) * s);
+            const double loose = std::clamp((aside - 0.5) / 0.5, 0.0, 1.0);
+            const Pose hand{Vec3(3.0 * mm * v[0] * aside, 0.25 * mm + 1.0 * mm * v[1] * loose,
+                                 20.0 * mm - 18.0 * mm * aside + 3.0 * mm * v[2] * loose),
+                            rotation_by(0.1 * loose * Vec3(v[3], v[4], v[5])) * teeth_down};
+            hold.follow(slots, hand, 1e-3);
+            const Wrench now = hold.on_hand({});
+            if (n > 0) {
+                const Vec3 way = hand.position - last.position,
+                           turn = rotation_between(last.orientation, hand.orientation);
+                work += glm::dot(felt.force, way) + glm::dot(felt.torque, turn);
+                bound += 0.5 * (std::abs(glm::dot(now.force - felt.force, way)) +
+                                std::abs(glm::dot(now.torque - felt.torque, turn)));
+                jump = std::max(jump, glm::length(now.force - felt.force) -
+                                          10e3 * (glm::length(way) + 60.0 * mm * glm::length(turn)));
+            }
+            most = std::max(most, glm::length(now.force));
+            felt = now;
+            last = hand;
+        }
+        CAPTURE(run, work * 1e3, bound * 1e3, most, jump);
+        CHECK(work <= 1.02 * bound + 1e-6);
+        CHECK(glm::length(felt.force) == 0.0);
+        CHECK(most > 1.0);
+        CHECK(jump < 0.5);
+    }
+}
+
+TEST_CASE("a running blade that misses the slot stops at the guide, and is free above it") {
+    const auto bone = bone_block({.low = {-6.0 * mm, -4.0 * mm, -4.0 * mm}, .high = {6.0 * mm, 4.0 * mm, 0.0}});
+    const auto guide = guide_above();
+    const volume::BoneSnapshot solid = guide->current();
+    for (const bool running : {false, true})
+        for (const double aside : {-2.5 * mm, 2.8 * mm}) {
+            Sawing sawing(*bone, 1000.0, 40e3, sagittal());
+            sawing.guide = &solid;
+            sawing.drive.running = running;
+            double z = 17.0 * mm, deepest = 1.0;
+            // 20 N against a damper.
+            for (int n = 0; n < 1500; ++n) {
+                const Wrench now = sawing.step({Vec3(0.0, aside, z), teeth_down}).wrench;
+                z -= (20.0 - now.force.z) / 300.0 * 1e-3;
+                deepest = std::min(deepest, z);
+            }
+            CAPTURE(running, aside, deepest * 1e3);
+            CHECK(deepest > 14.0 * mm);  // its top is at 15.5 mm; 20 N at 40 N/mm, and balls 1 mm apart
+            CHECK(sawing.removed == 0.0);
+        }
+}
+
+// Costly: twelve runs of 5 s; the blade has 600 balls.
+TEST_CASE("a slot bounds what a tilted or shaking hand does, and leaves a straight one as it is", "[slow]") {
+    const Hand hands[]{
+        {"straight"}, {"tilted by 3 x play", 3.0 * play, 0.0}, {"shaking by 3 x clearance", 0.0, 3.0 * clearance}};
+    const double reach = 4.5 * mm;  // from the slot to the far side of the bone
+    std::vector<Result> with, without;
+    for (const Hand& hand : hands) {
+        with.push_back(saw_with(hand, true));
+        without.push_back(saw_with(hand, false));
+    }
+    for (std::size_t n = 0; n < 3; ++n) {
+        const Result &a = with[n], &b = without[n];
+        INFO(hands[n].name << ": with the guide " << a.offset / mm << " mm, " << a.angle / degree << " deg, "
+                           << a.max / mm << " mm at most; without " << b.offset / mm << ", " << b.angle / degree << ", "
+                           << b.max / mm << "; jump " << a.jump << " N; most " << a.force << " N; play "
+                           << play / degree);
+        // From the middle of the slot, which is the clearance off the plan.
+        CHECK(a.angle <= play + 0.2 * degree);
+        CHECK(a.max <= clearance + clearance + reach * std::tan(play));
+        CHECK(a.force < 25.0);
+        CHECK(a.jump < 1.0);
+        if (n == 0) {
+            CHECK(std::abs(a.offset - b.offset) < 0.05 * mm);
+            CHECK(std::abs(a.max - b.max) < 0.05 * mm);
+        }
+        if (n == 1) CHECK(b.angle > a.angle);
+        if (n == 2) CHECK(b.max > a.max);
+        if (n == 1) CHECK(b.angle > play + 0.2 * degree);
+    }
+}
