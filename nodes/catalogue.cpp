@@ -74,6 +74,7 @@
     X(Grasp, coupling)                  \
     X(GripperInput, admittance)         \
     X(GripperOutput, admittance)        \
+    X(GuideSeat, training)              \
     X(HandCoupling, coupling)           \
     X(HeldWeight, admittance)           \
     X(Impact, vibration)                \

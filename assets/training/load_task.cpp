@@ -54,7 +54,7 @@ volume::Grid distance_of(const volume::Grid& labels, int label, const std::strin
 }  // namespace
 
 Task load_task(const std::filesystem::path& path) {
-    Task task{load_task_file(path), {}, 0};
+    Task task{load_task_file(path), {}, {}, 0};
     Hash hash;
     file::add_file(hash, path);
     for (const SparedFile& spare : task.spare) {
@@ -67,6 +67,15 @@ Task load_task(const std::filesystem::path& path) {
         } catch (const Error& error) {
             throw Error({path.string(), spare.line, 1}, fmt::format("structure '{}': {}", spare.name, error.what()));
         }
+    }
+    if (task.guide) {
+        try {
+            task.guide_body = std::make_shared<const bone::Bone>(bone::load_bone(task.guide->bone));
+        } catch (const Error& error) {
+            throw Error({path.string(), task.guide->line, 1}, fmt::format("guide: {}", error.what()));
+        }
+        hash.add_bytes(task.guide_body->distance.values.data(),
+                       task.guide_body->distance.values.size() * sizeof(float));
     }
     task.hash = hash.value();
     return task;

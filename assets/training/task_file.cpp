@@ -9,9 +9,11 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tactus::training {
@@ -20,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t max_spared = 64, max_settings = 256, longest_name = 64;
+constexpr std::size_t max_spared = 64, max_cuts = 32, max_settings = 256, longest_name = 64;
 
 class TaskReader : file::TomlFile {
 public:
@@ -28,8 +30,8 @@ public:
 
     TaskFile read() {
         const toml::table& root = this->root();
-        know(root,
-             {"format", "title", "about", "bone", "patch", "settings", "length", "blade", "cut", "spare", "limits"});
+        know(root, {"format", "title", "about", "bone", "patch", "settings", "length", "blade", "cut", "guide", "spare",
+                    "limits"});
         check_format(root);
         TaskFile task;
         task.file = path_;
@@ -40,8 +42,8 @@ public:
         if (const auto* node = root.get("settings")) task.settings = settings(*node);
         if (const auto* node = root.get("length")) task.length = quantity(*node, "s", 1.0, 3600.0);
         if (const auto* node = root.get("blade")) read_blade(as_table(*node), task.blade);
-        const toml::node& cut = need(root, "cut", "a task needs a table [cut]");
-        read_cut(cut, as_table(cut), task);
+        if (const auto* node = root.get("guide")) read_guide(*node, task);
+        read_cuts(need(root, "cut", "a task needs a table [cut]"), task);
         if (const auto* node = root.get("spare")) read_spared(*node, task);
         if (const auto* node = root.get("limits")) read_limits(as_table(*node), task.limits);
         return task;
@@ -67,27 +69,79 @@ private:
         set("stroke", blade.stroke, 0.0, 50e-3);
     }
 
-    void read_cut(const toml::node& where, const toml::table& table, TaskFile& task) const {
-        know(table, {"kind", "point", "normal", "from", "to", "feed", "depth", "tolerance", "depth_tolerance",
-                     "angle_tolerance"});
-        PlannedCut& cut = task.cut;
+    void read_guide(const toml::node& node, TaskFile& task) const {
+        const toml::table& table = as_table(node);
+        know(table, {"bone", "removal"});
+        GuideFile guide;
+        guide.line = static_cast<int>(node.source().begin.line);
+        guide.bone = beside(need(node, table, "bone", "a guide needs 'bone', its file: bone = \"FILE.vdb\""));
+        guide.removal = direction(need(node, table, "removal", "a guide needs 'removal', along which it is taken off"));
+        task.guide = std::move(guide);
+    }
+
+    /// One table, or several.
+    void read_cuts(const toml::node& node, TaskFile& task) const {
+        task.cuts.clear();
+        const toml::array* const array = node.as_array();
+        if (!array) {
+            task.cuts.push_back(read_cut(node, as_table(node), task));
+            return;
+        }
+        if (array->empty()) fail(node, "a task needs a cut");
+        if (array->size() > max_cuts) fail(node, fmt::format("a task has at most {} cuts", max_cuts));
+        for (const toml::node& one : *array) {
+            PlannedCut cut = read_cut(one, as_table(one), task);
+            if (cut.name.empty()) cut.name = fmt::format("{}", task.cuts.size() + 1);
+            if (std::ranges::any_of(task.cuts, [&](const PlannedCut& other) { return other.name == cut.name; }))
+                fail(one, fmt::format("two cuts are called '{}'", cut.name));
+            task.cuts.push_back(std::move(cut));
+        }
+    }
+
+    void read_slot(const toml::node& node, const PlannedCut& cut, TaskFile& task) const {
+        if (!task.guide) fail(node, "a slot needs a table [guide]");
+        const toml::table& table = as_table(node);
+        know(table, {"wall", "width", "top", "bottom", "low", "high"});
+        const auto length = [&](const char* name, const char* what) {
+            return quantity(need(node, table, name, fmt::format("a slot needs '{}', {}", name, what)), "mm", -0.2, 0.2);
+        };
+        saw::GuideSlot slot;
+        slot.frame = {cut.point, glm::normalize(glm::quat_cast(cut.axes()))};
+        slot.wall = length("wall", "the wall on the kept side, along the normal");
+        slot.other_wall = std::numeric_limits<double>::infinity();
+        if (const auto* width = table.get("width"))
+            slot.other_wall = slot.wall + quantity(*width, "mm", 0.05e-3, 20e-3);
+        slot.top = -length("top", "the height of its mouth above 'point'");
+        slot.bottom = -length("bottom", "the height of its lower end above 'point'");
+        slot.low = length("low", "where it begins along the stroke");
+        slot.high = length("high", "where it ends along the stroke");
+        if (!(slot.top < slot.bottom)) fail(node, "the mouth of the slot is not above its lower end");
+        if (!(slot.low < slot.high)) fail(node, "the slot ends before it begins");
+        task.slots.push_back(slot);
+    }
+
+    PlannedCut read_cut(const toml::node& where, const toml::table& table, TaskFile& task) const {
+        know(table, {"name", "kind", "point", "normal", "from", "to", "feed", "depth", "tolerance", "depth_tolerance",
+                     "angle_tolerance", "slot"});
+        PlannedCut cut;
+        if (const auto* node = table.get("name")) cut.name = line(*node);
         const toml::node& kind = need(where, table, "kind", "a cut is of the kind \"plane\" or \"line\"");
         const std::string name = word(kind);
         // Files may still have the old name of a line.
-        task.is_line = name == "line" || name == "guide";
-        if (name != "plane" && !task.is_line)
+        const bool is_line = name == "line" || name == "guide";
+        if (name != "plane" && !is_line)
             fail(kind, fmt::format("'{}' is neither \"plane\" nor \"line\"{}", name,
                                    did_you_mean(name, std::vector<std::string>{"plane", "line"})));
         for (const char* other : {"point", "normal"})
-            if (const auto* node = table.get(other); node && task.is_line)
+            if (const auto* node = table.get(other); node && is_line)
                 fail(*node, fmt::format("a line has 'from' and 'to' instead of '{}'", other));
         for (const char* other : {"from", "to"})
-            if (const auto* node = table.get(other); node && !task.is_line)
+            if (const auto* node = table.get(other); node && !is_line)
                 fail(*node, fmt::format("a plane has 'point' and 'normal' instead of '{}'", other));
         const toml::node& feed =
             need(where, table, "feed", "a cut needs 'feed', the direction into the bone, as [x, y, z]");
         const Vec3 into = direction(feed);
-        if (task.is_line) {
+        if (is_line) {
             const toml::node &from = need(where, table, "from", "a line needs 'from', the point where it begins"),
                              &to = need(where, table, "to", "a line needs 'to', the point where it ends");
             const Vec3 begin = vector(from), line = vector(to) - begin;
@@ -115,6 +169,8 @@ private:
         if (const auto* node = table.get("depth_tolerance")) cut.depth_tolerance = quantity(*node, "mm", 0.0, 50e-3);
         if (const auto* node = table.get("angle_tolerance"))
             cut.angle_tolerance = quantity(*node, "deg", 0.01 * degree, 90.0 * degree);
+        if (const auto* node = table.get("slot")) read_slot(*node, cut, task);
+        return cut;
     }
 
     void read_spared(const toml::node& node, TaskFile& task) const {

@@ -2,11 +2,14 @@
 // Task files: the task of a trainee on a bone, in TOML. The format is described in docs/reference/task-file.md.
 #pragma once
 
+#include "assets/bone/bone.hpp"
+#include "dsp/saw/guide_slot.hpp"
 #include "dsp/training/planned_cut.hpp"
 #include "dsp/training/spared.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +35,13 @@ struct TaskLimits {
     std::optional<double> heat;   ///< s above the temperature that harms bone
 };
 
+/// A cutting guide that is seated on the bone and holds the blade in its slots.
+struct GuideFile {
+    std::filesystem::path bone;  ///< absolute: the guide as a bone file, where it is seated
+    Vec3 removal{0.0, 0.0, 1.0};  ///< unit: it is put on against this direction
+    int line = 0;                 ///< in the task file
+};
+
 struct TaskFile {
     std::filesystem::path file;  ///< source file, absolute
     std::string title, about;
@@ -40,8 +50,9 @@ struct TaskFile {
     std::vector<std::string> settings;  ///< NODE.PARAM=VALUE, for that patch
     double length = 60.0;               ///< s: maximum duration of an attempt
     BladeSize blade;
-    PlannedCut cut;
-    bool is_line = false;
+    std::vector<PlannedCut> cuts{1};  ///< at least one
+    std::optional<GuideFile> guide;
+    std::vector<saw::GuideSlot> slots;  ///< of the guide
     std::vector<SparedFile> spare;
     TaskLimits limits;
 };
@@ -49,10 +60,11 @@ struct TaskFile {
 /// Reads and checks a task file; bone and label maps are not opened. Throws Error with file:line:column.
 TaskFile load_task_file(const std::filesystem::path& path);
 
-/// A task with its spared structures in memory; the bone is not loaded.
+/// A task with its spared structures and its guide in memory; the bone is not loaded.
 struct Task : TaskFile {
     std::vector<SparedStructure> spared;
-    std::uint64_t hash = 0;  ///< of the task file and its label maps
+    std::shared_ptr<const bone::Bone> guide_body;  ///< null: no guide
+    std::uint64_t hash = 0;  ///< of the task file, its label maps and its guide
 };
 Task load_task(const std::filesystem::path& path);
 

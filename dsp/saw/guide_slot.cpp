@@ -115,8 +115,9 @@ const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand,
     };
     std::size_t count = 0;
     if (slot_ >= 0) {
-        const Pose local = local_of(slots[static_cast<std::size_t>(slot_)]);
-        if (is_upright(local)) count = overlap(slots[static_cast<std::size_t>(slot_)], local, corners_);
+        const auto n = static_cast<std::size_t>(slot_);
+        if (n < slots.size())
+            if (const Pose local = local_of(slots[n]); is_upright(local)) count = overlap(slots[n], local, corners_);
         if (count == 0) {
             slot_ = -1;
             left_ = fade_time;

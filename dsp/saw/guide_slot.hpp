@@ -42,9 +42,10 @@ public:
     SlotHold(const SawShape& shape, const SlotSettings& settings);
 
     /// One tick of `dt` s. A slot holds the blade from when it is entered, with the blade between its walls, until no part
-    /// of the blade is left between them. Its force then fades over 50 ms. Allocates nothing.
+    /// of the blade is left between them. Its force then fades over 50 ms. Without slots, a slot that holds the blade lets
+    /// it go in the same way. Allocates nothing.
     const Pose& follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept;
-    /// The hand jumped, or there is no guide: without a fade.
+    /// The hand jumped: without a fade.
     void drop() noexcept { *this = SlotHold(shape_, settings_); }
 
     /// Force on the hand at the pose of the last `follow`: that of the springs, and `on_blade` (about the origin of the

@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
+#include <string>
 
 namespace tactus::training {
 
@@ -22,6 +25,7 @@ struct BladeSize {
 
 /// A flat cut. The three directions are unit vectors and orthogonal: stroke × feed = normal.
 struct PlannedCut {
+    std::string name;  ///< of one cut among several; may be empty
     Vec3 point{0.0, 0.0, 0.0};   ///< where the middle of the tooth edge enters the bone, m
     Vec3 feed{0.0, 0.0, -1.0};   ///< into the bone
     Vec3 stroke{1.0, 0.0, 0.0};  ///< along the blade
@@ -44,6 +48,23 @@ struct PlannedCut {
     Mat3 axes() const noexcept { return {stroke, feed, normal}; }
 };
 
+/// Index of the cut whose plane is nearest to a point; at least one cut. A plane counts within 30 mm of its entry, as others
+/// of the same bone may cross it farther away.
+inline std::size_t nearest_cut(std::span<const PlannedCut> cuts, const Vec3& p) noexcept {
+    constexpr double wide = 30e-3;  // m
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < cuts.size(); ++n) {
+        const Vec3 at = cuts[n].coordinates(p);
+        const double away = std::hypot(at.z, std::max(0.0, std::hypot(at.x, at.y) - wide));
+        if (away < least) {
+            least = away;
+            nearest = n;
+        }
+    }
+    return nearest;
+}
+
 /// Angle between two planes of unit normals, 0 to π/2.
 inline double angle_between_planes(const Vec3& a, const Vec3& b) noexcept {
     // atan2 keeps small angles exact, where acos loses half of the digits.
@@ -53,8 +74,8 @@ inline double angle_between_planes(const Vec3& a, const Vec3& b) noexcept {
 /// A blade against the plan.
 struct CutDeviation {
     double distance = 0.0;  ///< m, of the middle of the tooth edge from the planned plane, signed along its normal
-    double angle = 0.0;     ///< rad, between the blade and the planned plane
-    double depth = 0.0;     ///< m along the feed from the planned entry: see edge_depth
+    double angle = 0.0;  ///< rad, between the blade and the planned plane
+    double depth = 0.0;  ///< m along the feed from the planned entry: see edge_depth
 };
 
 /// Depth of the deepest point of the tooth edge that stands between `low` and `high` (m along the planned stroke); of

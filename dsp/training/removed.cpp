@@ -78,6 +78,18 @@ double CutBone::smallest_spacing() const noexcept {
     return std::min({before.spacing.x, before.spacing.y, before.spacing.z});
 }
 
+volume::Grid after_one_cut(const CutBone& bone, std::span<const PlannedCut> cuts, std::size_t cut) {
+    volume::Grid after = bone.after;
+    if (cuts.size() < 2) return after;
+    std::size_t n = 0;
+    for (int k = 0; k < after.size[2]; ++k)
+        for (int j = 0; j < after.size[1]; ++j)
+            for (int i = 0; i < after.size[0]; ++i, ++n)
+                if (after.values[n] != bone.before.values[n] && nearest_cut(cuts, after.position(i, j, k)) != cut)
+                    after.values[n] = bone.before.values[n];
+    return after;
+}
+
 CutVolumes cut_volumes(const CutBone& bone, const PlannedCut& cut, double kerf) {
     const volume::Grid& grid = bone.before;
     const double h = std::cbrt(grid.spacing.x * grid.spacing.y * grid.spacing.z), voxel = h * h * h;

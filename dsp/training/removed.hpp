@@ -5,7 +5,9 @@
 #include "dsp/training/planned_cut.hpp"
 #include "dsp/volume/grid.hpp"
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tactus::training {
@@ -26,6 +28,9 @@ struct CutVolumes {
     double over_m3 = 0.0;   ///< removed outside of the planned kerf widened by the tolerances
     double under_m3 = 0.0;  ///< of the planned kerf, at places where nothing within the tolerance was removed
 };
+
+/// The bone after one of several cuts: what was removed nearer to the planes of the others is bone again.
+volume::Grid after_one_cut(const CutBone& bone, std::span<const PlannedCut> cuts, std::size_t cut);
 
 /// A sample counts by the share of its voxel that the surface leaves in the bone, linear in the distance, so that the
 /// volumes do not step with the voxels. Under-cut is the area of the planned plane in bone (down to the depth stop,

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/contact/sample_surface.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/visual.hpp"
 #include "nodes/contact/body_parts.hpp"
 
-#include <algorithm>
 #include <memory>
-#include <vector>
 
 namespace tactus::nodes {
 
@@ -27,11 +24,10 @@ struct Body {
 
     void prepare(const Setup& setup) {
         try {
-            make();
+            parts_ = parts_of(*bone, spacing, triangles);
         } catch (const Error& error) {
             setup.fail(error.message());
         }
-        if (parts_->shell.empty()) setup.fail("bone '" + bone.name + "' has no surface");
         name_ = setup.name;
         publish();
     }
@@ -40,23 +36,6 @@ struct Body {
     void report(Report& report) const { report.set(name_, "points", static_cast<double>(parts_->shell.size())); }
 
 private:
-    void make() {
-        std::vector<contact::SurfacePoint> points = bone->points;
-        if (spacing > 0.0 || points.empty()) {
-            contact::SurfaceSampling sampling;
-            if (spacing > 0.0) sampling.spacing = spacing;
-            points = contact::sample_surface(bone->distance, sampling);
-        }
-        Vec3 middle(0.0);
-        for (const contact::SurfacePoint& p : points) middle += p.position;
-        middle /= static_cast<double>(std::max<std::size_t>(points.size(), 1));
-        for (contact::SurfacePoint& p : points) p.position -= middle;
-        volume::Grid field = bone->distance;
-        field.origin -= middle;
-        parts_ =
-            std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
-                                              Pose{middle, {1.0, 0.0, 0.0, 0.0}}, triangles);
-    }
     void publish() noexcept {
         body = parts_->body();
         count = static_cast<double>(parts_->shell.size());

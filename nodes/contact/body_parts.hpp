@@ -2,7 +2,9 @@
 // The data of a node that creates a body.
 #pragma once
 
+#include "assets/bone/bone.hpp"
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/contact/sample_surface.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
@@ -11,7 +13,9 @@
 #include "dsp/geometry/triangle_tree.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <vector>
 
 namespace tactus::nodes {
 
@@ -42,5 +46,27 @@ struct BodyParts {
         return {&shell, &map, triangles ? &*triangles : nullptr, home, 1, content_hash};
     }
 };
+
+/// The body of a bone: its frame has the axes of the file and the centroid of the surface points as its origin. `spacing`
+/// of the points, m; 0: those of the file, or 0.5 mm if it has none. Throws Error for a bone without a surface.
+inline std::shared_ptr<const BodyParts> parts_of(const bone::Bone& bone, double spacing, bool with_triangles) {
+    std::vector<contact::SurfacePoint> points = bone.points;
+    if (spacing > 0.0 || points.empty()) {
+        contact::SurfaceSampling sampling;
+        if (spacing > 0.0) sampling.spacing = spacing;
+        points = contact::sample_surface(bone.distance, sampling);
+    }
+    Vec3 middle(0.0);
+    for (const contact::SurfacePoint& p : points) middle += p.position;
+    middle /= static_cast<double>(std::max<std::size_t>(points.size(), 1));
+    for (contact::SurfacePoint& p : points) p.position -= middle;
+    volume::Grid field = bone.distance;
+    field.origin -= middle;
+    auto parts =
+        std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
+                                          Pose{middle, {1.0, 0.0, 0.0, 0.0}}, with_triangles);
+    if (parts->shell.empty()) throw Error("bone '" + bone.name + "' has no surface");
+    return parts;
+}
 
 }  // namespace tactus::nodes

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/saw_blade.hpp"
+#include "dsp/saw/guide_slot.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/notice.hpp"
+#include "graph/node/task_asset.hpp"
 #include "graph/node/visual.hpp"
 #include "nodes/contact/tool_parameters.hpp"
 #include "nodes/contact/tool_report.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 
 namespace tactus::nodes {
 
@@ -26,6 +31,7 @@ struct SawBlade {
     In<volume::BoneSnapshot> bone{"the carved bone"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
+    In<bool> seated{optional, "the guide is on the bone: until then the blade has no force; unconnected: true"};
     In<bool> release{optional, "while held, the bone is released: wire the clutch of the hand here"};
     In<Wrench> asked{optional,
                      "what device_output was asked for, as delay 1; with 'applied' teeth cut by the share of "
@@ -33,6 +39,8 @@ struct SawBlade {
                      "N, N m"};
     In<Wrench> applied{optional, "what the device was given, device_output.applied as delay 1", "N, N m"};
     Out<Wrench> wrench{"on the blade, about its origin", "N, N m"};
+    Out<Pose> held{"pose of the blade: 'pose', moved as far as a slot of the guide requires", "m"};
+    Out<double> slot{"of the guide that holds the blade: 1 for the first; 0: none"};
     Out<double> load{"thrust against the cutting direction", "N"};
     Out<double> stroke_force{"of the teeth along the stroke, to and fro at the stroke's rate", "N"};
     Out<double> feed{"advance of the teeth that cut", "m/s"};
@@ -48,6 +56,10 @@ struct SawBlade {
     Out<carve::CutFront> front{"how far the teeth have cut; wire it to carve.front as batch"};
     Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm",
                     "upper bound of the stiffness that the hand feels, for any number of points in contact"};
+    Asset<training::Task> guide{optional,
+                                "task whose guide stops the blade, which never cuts it, and whose slots hold it"};
+    Param guide_stiffness{structural, "10 N/mm", "0.01 N/mm", "50 N/mm",
+                          "of the hand's spring against the walls of a slot; the blade itself never leaves the slot"};
     Param device_scale{
         "1", "0.01", "10",
         "forces on the device over those of the tool; teeth cut by those of the tool, so that devices of "
@@ -68,7 +80,7 @@ struct SawBlade {
 
     std::vector<Visual> visuals() const {
         return {{.kind = VisualKind::blade,
-                 .pose = "pose",
+                 .pose = "held",
                  .force = "wrench",
                  .size = {length.value, height.value, thickness.value}}};
     }
@@ -100,9 +112,20 @@ struct SawBlade {
                 shape.height * 1e3, shape.length * 1e3));
         law_ = saw::CuttingLaw{}.with_edge(kerf).sharpened(sharpness);
         blade_.emplace(shape, stiffness);
+        hold_ = saw::SlotHold(shape, {.stiffness = guide_stiffness, .thickness = kerf});
+        guide_body_.reset();
+        if (guide && guide->guide_body) {
+            const bone::Bone& body = *guide->guide_body;
+            guide_body_ = std::make_unique<volume::BoneEditor>(
+                body.distance, body.density, volume::BoneEditorOptions{.max_dirty = 1, .max_versions = 1});
+            guide_now_ = guide_body_->current();
+        }
+        held = Pose{};
         waits_.attach(setup);
         released_.attach(setup);
         last_state_ = saw::HoldState::engaged;
+        last_pose_ = {};
+        max_guide_force_ = 0.0;
         touch_ = {};
         pause_ = {};
         told_ = {};
@@ -116,9 +139,13 @@ struct SawBlade {
             .rate = strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(stroke_rate),
             .dt = std::clamp(elapsed, seconds(tick.period), 0.05),
             .rendered = rendered_share(asked, applied),
-            .release = pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get())};
-        const saw::SawContact now = blade_->step(bone.get(), pose.get(), drive, law_);
-        wrench = now.wrench * device_scale;
+            .release =
+                pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get()) || !is_seated()};
+        const Pose at = guided(drive);
+        const saw::SawContact now = blade_->step(bone.get(), at, drive, law_, guide_body_ ? &guide_now_ : nullptr);
+        wrench = hold_.on_hand(now.wrench) * device_scale;
+        held = at;
+        slot = hold_.slot() + 1;
         load = now.thrust;
         stroke_force = now.along;
         feed = now.feed;
@@ -129,7 +156,7 @@ struct SawBlade {
         in_contact = touches;
         waiting = now.state == saw::HoldState::waiting;
         rendered = drive.rendered;
-        blade_->teeth().fill(last_, pose.get(), drive.running && now.state == saw::HoldState::engaged);
+        blade_->teeth().fill(last_, at, drive.running && now.state == saw::HoldState::engaged);
         ++last_.version;
         last_.content_hash = carve::hash_of(last_);
         front = last_;
@@ -141,22 +168,51 @@ struct SawBlade {
         told_.add(bone.get(), pose.get(), {now.state, touches, now.thrust, now.lag, drive.rendered, 0.0, drive.dt});
     }
 
-    void report(Report& report) const { told_.tell(report, device_scale); }
+    void report(Report& report) const {
+        told_.tell(report, device_scale);
+        if (guide_body_) report.set("guide", "max_force_N", max_guide_force_);
+    }
 
 private:
+    bool is_seated() const noexcept { return !guide_body_ || !seated.connected || seated.get(); }
+
+    /// A blade that waits to be drawn out of bone, or is released, is in no slot, either.
+    Pose guided(const saw::Drive& drive) noexcept {
+        if (!guide_body_) return pose.get();
+        const bool is_lost = !is_valid(pose.get()) || glm::length(pose->position) > 1e3 ||
+                             saw::is_jump(last_pose_, pose.get(), 0.5 * length + height, drive.dt);
+        last_pose_ = pose.get();
+        if (is_lost) {
+            hold_.drop();
+            return pose.get();
+        }
+        const bool is_held = is_seated() && !drive.release && last_state_ == saw::HoldState::engaged;
+        const Pose at =
+            hold_.follow(is_held ? std::span<const saw::GuideSlot>(guide->slots) : std::span<const saw::GuideSlot>(),
+                         pose.get(), drive.dt);
+        max_guide_force_ = std::max(max_guide_force_, hold_.force());
+        return at;
+    }
+
     std::optional<saw::SawBlade> blade_;
     saw::CuttingLaw law_;
     carve::CutFront last_;
     ToolReport told_;
     contact::ContactSwitch touch_;
     PauseWatch pause_;
+    saw::SlotHold hold_;
+    std::unique_ptr<volume::BoneEditor> guide_body_;  // never edited
+    volume::BoneSnapshot guide_now_;
+    Pose last_pose_;
+    double max_guide_force_ = 0.0;
     Notice waits_{tool_waits}, released_{tool_released};
     saw::HoldState last_state_ = saw::HoldState::engaged;
 };
 
-TACTUS_NODE(SawBlade, pose, bone, running, strokes, release, asked, applied, wrench, load, stroke_force, feed, teeth,
-            passing, penetration, in_contact, waiting, rendered, front, stiffness, device_scale, threshold, stroke_rate,
-            sharpness, sagittal, length, height, thickness, kerf, stroke, tooth_pitch)
+TACTUS_NODE(SawBlade, pose, bone, running, strokes, seated, release, asked, applied, wrench, held, slot, load,
+            stroke_force, feed, teeth, passing, penetration, in_contact, waiting, rendered, front, stiffness, guide,
+            guide_stiffness, device_scale, threshold, stroke_rate, sharpness, sagittal, length, height, thickness, kerf,
+            stroke, tooth_pitch)
 TACTUS_VISUALS(SawBlade)
 
 }  // namespace tactus::nodes

@@ -3,6 +3,7 @@
 #include "graph/node/task_asset.hpp"
 #include "graph/node/visual.hpp"
 
+#include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
 namespace tactus::nodes {
@@ -17,6 +18,7 @@ struct PlanFrame {
     Out<Pose> placed{"pose of the blade at the bone", "m"};
     Out<Pose> placed_frame{"device axes at the handle, at the bone; for device_wrench", "m"};
     Asset<training::Task> task{"the task"};
+    Param cut{structural, "1", "1", "32", "of the task: the first, the second, ..."};
     Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting blade to the planned entry"};
 
     // The frame of the workspace goes on to `place`.
@@ -24,10 +26,13 @@ struct PlanFrame {
         return {{.kind = VisualKind::workspace, .place = "placed_frame", .frame = "frame"}};
     }
 
-    void prepare(const Setup&) {
-        const training::PlannedCut& cut = task->cut;
-        at_ = {cut.point - clearance.value * cut.feed,
-               glm::normalize(glm::quat_cast(Mat3(cut.stroke, cut.normal, -cut.feed)))};
+    void prepare(const Setup& setup) {
+        const auto index = static_cast<std::size_t>(cut.value);
+        if (index > task->cuts.size())
+            setup.fail(fmt::format("the task has {} cuts; there is no cut {}", task->cuts.size(), index));
+        const training::PlannedCut& planned = task->cuts[index - 1];
+        at_ = {planned.point - clearance.value * planned.feed,
+               glm::normalize(glm::quat_cast(Mat3(planned.stroke, planned.normal, -planned.feed)))};
         placed = at_ * Pose{};
         placed_frame = at_ * Pose{};
     }
@@ -40,7 +45,7 @@ private:
     Pose at_;
 };
 
-TACTUS_NODE(PlanFrame, pose, frame, placed, placed_frame, task, clearance)
+TACTUS_NODE(PlanFrame, pose, frame, placed, placed_frame, task, cut, clearance)
 TACTUS_VISUALS(PlanFrame)
 
 }  // namespace tactus::nodes

@@ -41,7 +41,8 @@ double finite(double v) noexcept { return std::isfinite(v) ? std::clamp(v, -1e9,
 
 struct Task {
     static constexpr auto about =
-        "What a trainee is to do: where the blade is against the planned cut, what is over its limit, a cue for it, "
+        "What a trainee is to do: where the blade is against the nearest planned cut, what is over its limit, a cue "
+        "for it, "
         "and "
         "the record task.csv that 'tactus score' reads. The scores are not validated.";
     static constexpr NodeRole role = NodeRole::file_sink;
@@ -81,14 +82,15 @@ struct Task {
             stream_ = &setup.host->record({file.value, "", &attempt_row_type, setup.period}, setup.where);
         distance = 0.0;
         angle = 0.0;
-        depth_left = task_->cut.depth;
+        depth_left = task_->cuts.front().depth;
         clearance = 1.0;
     }
 
     void process(const Tick& tick) noexcept {
         const training::Task& t = *task_;
         if (is_valid(pose.get()) && glm::length(pose->position) < 1e3) at_ = pose.get();
-        const training::CutDeviation now = training::deviation_of(t.cut, t.blade, at_);
+        const training::PlannedCut& cut = t.cuts[training::nearest_cut(t.cuts, at_.position)];
+        const training::CutDeviation now = training::deviation_of(cut, t.blade, at_);
         double least = 1.0, margin_left = 1.0;
         for (const training::SparedStructure& s : t.spared) {
             const double c = training::clearance_of(s, t.blade, at_);
@@ -102,20 +104,20 @@ struct Task {
 
         const training::TaskLimits& limits = t.limits;
         const bool is_near = now.depth > -near;
-        const double left = t.cut.depth - now.depth;
-        const double aside = std::abs(now.distance) / t.cut.tolerance, turned = now.angle / t.cut.angle_tolerance;
+        const double left = cut.depth - now.depth;
+        const double aside = std::abs(now.distance) / cut.tolerance, turned = now.angle / cut.angle_tolerance;
         const double push = limits.force ? pressed / *limits.force : 0.0;
         distance = now.distance;
         angle = now.angle;
         depth_left = left;
         clearance = least;
         off_plan = is_near && (aside > 1.0 || turned > 1.0);
-        too_deep = left < -t.cut.depth_tolerance;
+        too_deep = left < -cut.depth_tolerance;
         too_near = margin_left < 0.0;
         over_force = push > 1.0;
         over_heat = limits.heat && hot > *limits.heat;
         const double shares = std::max({is_near ? std::max(aside, turned) : 0.0, push,
-                                        is_near ? 1.0 - 0.5 * (left + t.cut.depth_tolerance) / stop_ahead : 0.0,
+                                        is_near ? 1.0 - 0.5 * (left + cut.depth_tolerance) / stop_ahead : 0.0,
                                         1.0 - 0.5 * margin_left / margin_ahead});
         cue = std::clamp(2.0 * shares - 1.0, 0.0, 1.0);
 

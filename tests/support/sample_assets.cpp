@@ -96,7 +96,7 @@ std::shared_ptr<const void> sample_asset(std::string_view type_name) {
     if (type_name == AssetLoader<training::Task>::name) {
         training::Task task;
         task.title = "through the ball";
-        task.cut.point = {0.0, 0.0, 10e-3};
+        task.cuts[0].point = {0.0, 0.0, 10e-3};
         task.limits = {5.0, 1.0, 0.5};
         task.spared.push_back({"ball", 1e-3, ball().distance});
         return std::make_shared<const training::Task>(std::move(task));

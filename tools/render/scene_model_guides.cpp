@@ -139,14 +139,15 @@ SceneModel::TaskMesh SceneModel::make_task(const std::string& path) {
     TaskMesh made;
     try {
         const training::Task task = training::load_task(path);
-        const training::PlannedCut& cut = task.cut;
-        const double half = std::min(cut.half_length, widest);
         geometry::SurfacePatch patch;
-        const Vec3 a = cut.position(-half, 0.0), b = cut.position(half, 0.0), c = cut.position(half, cut.depth),
-                   d = cut.position(-half, cut.depth);
-        for (const auto& t : {std::array{a, b, c}, {a, c, d}, {c, b, a}, {d, c, a}})
-            display::add_triangle(patch, t[0], t[1], t[2], guide_colour);
-        add_bar(patch, d, c, bar_radius, guide_colour);
+        for (const training::PlannedCut& cut : task.cuts) {
+            const double half = std::min(cut.half_length, widest);
+            const Vec3 a = cut.position(-half, 0.0), b = cut.position(half, 0.0), c = cut.position(half, cut.depth),
+                       d = cut.position(-half, cut.depth);
+            for (const auto& t : {std::array{a, b, c}, {a, c, d}, {c, b, a}, {d, c, a}})
+                display::add_triangle(patch, t[0], t[1], t[2], guide_colour);
+            add_bar(patch, d, c, bar_radius, guide_colour);
+        }
         made.cut = renderer_.meshes().make();
         made.cut_bounds = display::bounds_of(patch);
         renderer_.meshes().set_part(made.cut, 0, patch);

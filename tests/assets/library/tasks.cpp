@@ -75,21 +75,21 @@ TEST_CASE("a generated fibula has the size, the cortex and the open cavity of on
 TEST_CASE("library tasks enter at the surface of their bone and spare what lies behind") {
     const bone::Bone mandible = library::make_mandible(), fibula = library::make_fibula();
     const training::TaskFile canal = task("mandible-canal"), osteotomy = task("fibula-osteotomy");
-    CHECK(std::abs(surface_of(mandible, canal.cut)) < 0.3 * mm);
-    CHECK(std::abs(surface_of(fibula, osteotomy.cut)) < 0.3 * mm);
+    CHECK(std::abs(surface_of(mandible, canal.cuts[0])) < 0.3 * mm);
+    CHECK(std::abs(surface_of(fibula, osteotomy.cuts[0])) < 0.3 * mm);
     // The depth stop, the round floor of the kerf and half a millimetre lie before the nerve.
-    const double nerve = depth_of(library::mandible_canal(), canal.cut, 1 * mm);
-    CHECK(nerve > canal.cut.depth + 0.5 * mm);
-    CHECK(nerve < canal.cut.depth + 2 * mm);
+    const double nerve = depth_of(library::mandible_canal(), canal.cuts[0], 1 * mm);
+    CHECK(nerve > canal.cuts[0].depth + 0.5 * mm);
+    CHECK(nerve < canal.cuts[0].depth + 2 * mm);
     // The bone ends before the depth stop, the vessels begin behind the bone.
     const training::CutBone both{fibula.distance, fibula.distance};
     double far_side = 0.0;
     for (double s = -10 * mm; s < 10 * mm; s += 0.2 * mm)
         for (double d = 0.0; d < 20 * mm; d += 0.1 * mm)
-            if (both.before_at(osteotomy.cut.position(s, d)) < 0.0) far_side = std::max(far_side, d);
-    const double vessels = depth_of(library::fibula_vessels(), osteotomy.cut, 1 * mm);
+            if (both.before_at(osteotomy.cuts[0].position(s, d)) < 0.0) far_side = std::max(far_side, d);
+    const double vessels = depth_of(library::fibula_vessels(), osteotomy.cuts[0], 1 * mm);
     INFO("far side " << far_side << ", vessels " << vessels);
-    CHECK(far_side < osteotomy.cut.depth);
+    CHECK(far_side < osteotomy.cuts[0].depth);
     CHECK(vessels > far_side + 1 * mm);
     CHECK(vessels < far_side + 3.5 * mm);
 }

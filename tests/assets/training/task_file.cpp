@@ -8,6 +8,8 @@
 #include "tests/support/catch.hpp"
 
 #include <unistd.h>
+#include <glm/geometric.hpp>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +19,7 @@
 
 using namespace tactus;
 namespace fs = std::filesystem;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -88,8 +91,8 @@ TEST_CASE("a task is read with its units, relative to its own folder") {
     CHECK(task.length == 20.0);
     CHECK(std::abs(task.blade.kerf - 0.8 * mm) < 1e-12);
     CHECK(std::abs(task.blade.length - 40 * mm) < 1e-12);
-    CHECK(std::abs(task.cut.angle_tolerance - 3.0 * 3.14159265358979 / 180.0) < 1e-9);
-    CHECK(task.cut.depth_tolerance == task.cut.tolerance);
+    CHECK(std::abs(task.cuts[0].angle_tolerance - 3.0 * 3.14159265358979 / 180.0) < 1e-9);
+    CHECK(task.cuts[0].depth_tolerance == task.cuts[0].tolerance);
     CHECK(task.limits.force == 9.0);
     CHECK_FALSE(task.limits.time);
     CHECK(task.limits.heat == 2.0);
@@ -100,7 +103,7 @@ TEST_CASE("a task is read with its units, relative to its own folder") {
 
 TEST_CASE("the axes of a cut are orthogonal, and the feed is made to lie in the plane") {
     const TaskScratch folder;
-    const training::PlannedCut cut = training::load_task_file(folder.write(plane)).cut;
+    const training::PlannedCut cut = training::load_task_file(folder.write(plane)).cuts[0];
     CHECK(std::abs(cut.feed.y - 1.0) < 1e-12);
     CHECK(std::abs(glm::dot(cut.stroke, cut.feed)) < 1e-12);
     CHECK(std::abs(std::abs(cut.normal.x) - 1.0) < 1e-12);
@@ -111,11 +114,53 @@ TEST_CASE("the axes of a cut are orthogonal, and the feed is made to lie in the 
             with(with(plane, "\"plane\"", name), "point  = \"1 mm, -6 mm, 0 mm\"", "from = \"0 mm, -6 mm, -4 mm\""),
             "normal = [1, 0, 0]", "to = \"0 mm, -6 mm, 8 mm\"");
         const training::TaskFile line = training::load_task_file(folder.write(text));
-        CHECK(line.is_line);
-        CHECK(std::abs(line.cut.half_length - 6 * mm) < 1e-12);
-        CHECK(std::abs(line.cut.point.z - 2 * mm) < 1e-12);
-        CHECK(std::abs(line.cut.stroke.z - 1.0) < 1e-12);
+        REQUIRE(line.cuts.size() == 1);
+        CHECK(std::abs(line.cuts[0].half_length - 6 * mm) < 1e-12);
+        CHECK(std::abs(line.cuts[0].point.z - 2 * mm) < 1e-12);
+        CHECK(std::abs(line.cuts[0].stroke.z - 1.0) < 1e-12);
     }
+}
+
+TEST_CASE("a task has several cuts, each with its slot of a guide") {
+    const TaskScratch folder;
+    const std::string one =
+        plane.substr(plane.find("[cut]\n") + 6, plane.find("[[spare]]") - plane.find("[cut]\n") - 6);
+    const std::string slot =
+        "slot = { wall = \"-0.4 mm\", width = \"1.3 mm\", top = \"15 mm\", bottom = \"-1 mm\", low = "
+        "\"-9 mm\", high = \"8 mm\" }\n";
+    const std::string ledge = with(slot, "width = \"1.3 mm\", ", "");
+    const std::string guide = "[guide]\nbone = \"guide.vdb\"\nremoval = [0, -2, 0]\n";
+    const auto text = [&](const std::string& first, const std::string& second) {
+        return with(plane, "[cut]\n" + one,
+                    guide + "[[cut]]\nname = \"A\"\n" + one + first + "[[cut]]\n" +
+                        with(one, "\"1 mm, -6 mm", "\"21 mm, -6 mm") + second);
+    };
+    const training::TaskFile task = training::load_task_file(folder.write(text(slot, ledge)));
+    REQUIRE(task.cuts.size() == 2);
+    CHECK(task.cuts[0].name == "A");
+    CHECK(task.cuts[1].name == "2");
+    REQUIRE(task.guide);
+    CHECK(task.guide->bone == folder.path / "guide.vdb");
+    CHECK(task.guide->removal.y == -1.0);
+    REQUIRE(task.slots.size() == 2);
+    const saw::GuideSlot& first = task.slots[0];
+    CHECK(glm::length(first.frame.position - task.cuts[0].point) < 1e-12);
+    CHECK(glm::length(first.frame.rotate(Vec3(0.0, 1.0, 0.0)) - task.cuts[0].feed) < 1e-9);
+    CHECK(glm::length(first.frame.rotate(Vec3(0.0, 0.0, 1.0)) - task.cuts[0].normal) < 1e-9);
+    CHECK(first.other_wall - first.wall == Approx(1.3 * mm));
+    CHECK(first.top == Approx(-15 * mm));
+    CHECK(first.bottom == Approx(1 * mm));
+    CHECK(std::isinf(task.slots[1].other_wall));
+    CHECK(training::nearest_cut(task.cuts, Vec3(3 * mm, -5 * mm, 0.0)) == 0);
+    CHECK(training::nearest_cut(task.cuts, Vec3(18 * mm, -5 * mm, 0.0)) == 1);
+
+    CHECK_THAT(task_refusal(with(text(slot, slot), "top = \"15 mm\"", "top = \"-3 mm\"")),
+               ContainsSubstring("the mouth of the slot is not above its lower end"));
+    CHECK_THAT(task_refusal(with(text(slot, slot), guide, "")), ContainsSubstring("a slot needs a table [guide]"));
+    CHECK_THAT(task_refusal(with(text(slot, slot), "low = ", "lov = ")), ContainsSubstring("lov"));
+    CHECK_THAT(task_refusal(with(text("", "name = \"A\"\n"), "removal = [0, -2, 0]", "removal = [0, 0, 0]")),
+               ContainsSubstring("this direction is zero"));
+    CHECK_THAT(task_refusal(text("", "name = \"A\"\n")), ContainsSubstring("two cuts are called 'A'"));
 }
 
 TEST_CASE("a wrong task is refused with the line of what is wrong") {

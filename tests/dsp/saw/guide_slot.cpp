@@ -43,7 +43,7 @@ saw::GuideSlot slot_above() {
     return slot;
 }
 
-double box(const Vec3& p, const Vec3& low, const Vec3& high) {
+double to_box(const Vec3& p, const Vec3& low, const Vec3& high) {
     const Vec3 q = glm::max(low - p, p - high);
     return glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
 }
@@ -53,8 +53,8 @@ std::unique_ptr<volume::BoneEditor> guide_above() {
     const Vec3 low(-13.0 * mm, -4.0 * mm, 0.5 * mm), high(13.0 * mm, 4.5 * mm, 15.5 * mm);
     // The normal of the cut is y: stroke x, feed -z.
     return bone_where({.low = low, .high = high, .voxel = 0.3 * mm}, [=](const Vec3& p) {
-        const double hole = box(p, Vec3(-10.0 * mm, -0.5 * mm, -1.0), Vec3(10.0 * mm, 1.0 * mm, 1.0));
-        return std::max(box(p, low, high), -hole);
+        const double hole = to_box(p, Vec3(-10.0 * mm, -0.5 * mm, -1.0), Vec3(10.0 * mm, 1.0 * mm, 1.0));
+        return std::max(to_box(p, low, high), -hole);
     });
 }
 

@@ -19,10 +19,10 @@ namespace {
 training::Task sample() {
     training::Task task;
     task.title = "top";
-    task.cut.point = {0.0, 0.0, 0.0};
-    task.cut.depth = 5 * mm;
-    task.cut.depth_tolerance = 0.5 * mm;
-    task.cut.angle_tolerance = 5 * degree;
+    task.cuts[0].point = {0.0, 0.0, 0.0};
+    task.cuts[0].depth = 5 * mm;
+    task.cuts[0].depth_tolerance = 0.5 * mm;
+    task.cuts[0].angle_tolerance = 5 * degree;
     task.limits.force = 6.0;
     task.limits.time = 0.5;
     task.limits.heat = 2.0;
@@ -38,7 +38,7 @@ training::Task sample() {
 
 /// A blade in the plan, moved aside and deeper, and turned about the feed.
 Pose blade(double aside, double depth, double turn) {
-    const training::PlannedCut cut = sample().cut;
+    const training::PlannedCut cut = sample().cuts[0];
     const Quat in_plan = glm::quat_cast(cut.axes());
     return {cut.position(0.0, depth, aside), rotation_by(turn * cut.feed) * in_plan};
 }
@@ -170,10 +170,10 @@ TEST_CASE("a lost pose keeps the last one") {
 TEST_CASE("a scene before the plan cuts along it") {
     NodeHarness node("plan_frame", {.period = flicks_per_second / 1000, .max_frames = 1});
     training::Task task = sample();
-    task.cut.point = {10 * mm, -4 * mm, 3 * mm};
-    task.cut.feed = {0.0, 1.0, 0.0};
-    task.cut.stroke = {0.0, 0.0, 1.0};
-    task.cut.normal = glm::cross(task.cut.stroke, task.cut.feed);
+    task.cuts[0].point = {10 * mm, -4 * mm, 3 * mm};
+    task.cuts[0].feed = {0.0, 1.0, 0.0};
+    task.cuts[0].stroke = {0.0, 0.0, 1.0};
+    task.cuts[0].normal = glm::cross(task.cuts[0].stroke, task.cuts[0].feed);
     node.asset("task", std::make_shared<const training::Task>(task)).set("clearance", "5 mm");
     // A blade of the workspace, 7 mm down: y of the blade is -z of the device.
     const Quat cuts_down = glm::angleAxis(-90.0 * degree, Vec3(1.0, 0.0, 0.0));
@@ -181,8 +181,8 @@ TEST_CASE("a scene before the plan cuts along it") {
     node.prepare();
     node.run(1);
     const Pose placed = node.last<Pose>("placed");
-    const Vec3 where = task.cut.coordinates(placed.position);
+    const Vec3 where = task.cuts[0].coordinates(placed.position);
     CHECK(glm::length(where - Vec3(1 * mm, 2 * mm, 2 * mm)) < 1e-9);
-    CHECK(glm::length(placed.rotate(Vec3(0.0, 1.0, 0.0)) - task.cut.feed) < 1e-9);
-    CHECK(glm::length(placed.rotate(Vec3(1.0, 0.0, 0.0)) - task.cut.stroke) < 1e-9);
+    CHECK(glm::length(placed.rotate(Vec3(0.0, 1.0, 0.0)) - task.cuts[0].feed) < 1e-9);
+    CHECK(glm::length(placed.rotate(Vec3(1.0, 0.0, 0.0)) - task.cuts[0].stroke) < 1e-9);
 }

@@ -135,9 +135,73 @@ std::vector<SparedScore> spared_of(const ScoredRun& run) {
     return all;
 }
 
-}  // namespace
+/// Samples of the blade at each cut.
+std::vector<std::vector<training::AttemptSample>> by_cut(const ScoredRun& run) {
+    std::vector<std::vector<training::AttemptSample>> samples(run.task.cuts.size());
+    for (const training::AttemptSample& s : run.samples)
+        samples[training::nearest_cut(run.task.cuts, s.pose.position)].push_back(s);
+    return samples;
+}
 
-namespace {
+CutScore score_cut(ScoredRun& run, const training::PlannedCut& cut, const training::CutBone& bone,
+                   const std::vector<training::AttemptSample>& samples) {
+    const training::BladeSize& blade = run.task.blade;
+    CutScore score;
+    score.name = cut.name;
+    const training::CutVolumes volumes = training::cut_volumes(bone, cut, blade.kerf);
+    score.over_mm3 = volumes.over_m3 * 1e9;
+    score.under_mm3 = volumes.under_m3 * 1e9;
+    run.removed_mm3 += volumes.removed_m3 * 1e9;
+    const auto plane = training::fit_cut_plane(bone, cut, blade.kerf);
+    run.planes.push_back(plane);
+    run.severances.emplace_back();
+    if (!plane) return score;
+    score.rms_mm = plane->rms * 1e3;
+    score.max_mm = plane->max * 1e3;
+    if (plane->angle) score.angle_deg = *plane->angle / degree;
+    run.severances.back() = training::severance_of(bone, cut, *plane, 0.5 * (blade.length + blade.stroke));
+    if (!run.severances.back().severed) return score;
+    if (const auto through = training::breakthrough_of(samples, cut, blade, run.severances.back())) {
+        score.breakthrough_mm = through->depth * 1e3;
+        score.breakthrough_mm_per_s = through->speed * 1e3;
+    }
+    return score;
+}
+
+/// Every cut by itself, and all of them together.
+void score_cuts(ScoredRun& run) {
+    const std::vector<training::PlannedCut>& cuts = run.task.cuts;
+    const training::CutBone bone{run.before.distance, run.after.distance};
+    const auto samples = by_cut(run);
+    Score& all = run.score;
+    const auto greatest = [](std::optional<double>& to, const std::optional<double>& one) {
+        if (one) to = std::max(to.value_or(*one), *one);
+    };
+    double squares = 0.0, points = 0.0, jerk = 0.0, jerks = 0.0;
+    for (std::size_t n = 0; n < cuts.size(); ++n) {
+        const volume::Grid after = training::after_one_cut(bone, cuts, n);
+        const CutScore one = score_cut(run, cuts[n], {run.before.distance, after}, samples[n]);
+        all.over_mm3 += one.over_mm3;
+        all.under_mm3 += one.under_mm3;
+        greatest(all.max_mm, one.max_mm);
+        greatest(all.angle_deg, one.angle_deg);
+        greatest(all.breakthrough_mm, one.breakthrough_mm);
+        greatest(all.breakthrough_mm_per_s, one.breakthrough_mm_per_s);
+        if (one.rms_mm) {
+            const auto count = static_cast<double>(run.planes[n]->points.size());
+            squares += count * *one.rms_mm * *one.rms_mm;
+            points += count;
+        }
+        all.cuts.push_back(one);
+        if (cuts.size() == 1 || samples[n].empty()) continue;
+        const training::MotionMeasures motion =
+            training::motion_of(samples[n], cuts[n], std::numeric_limits<double>::infinity());
+        all.strokes += motion.strokes;
+        if (motion.jerk) jerk += *motion.jerk, ++jerks;
+    }
+    if (points > 0.0) all.rms_mm = cuts.size() == 1 ? all.cuts.front().rms_mm : std::sqrt(squares / points);
+    if (jerks > 0.0) all.jerk = jerk / jerks;
+}
 
 /// A folder of sessions, DIR of 'tactus session' or DIR/PSEUDONYM, is none itself.
 void refuse_many_sessions(const fs::path& folder) {
@@ -195,35 +259,19 @@ ScoredRun score_run(const fs::path& folder, const fs::path& task) {
     run.score.limited = said.limited;
     for (training::AttemptSample& s : run.samples) s.force /= said.device_scale;
 
-    const training::PlannedCut& cut = run.task.cut;
-    const training::CutBone bone{run.before.distance, run.after.distance};
     Score& score = run.score;
-    const training::CutVolumes volumes = training::cut_volumes(bone, cut, run.task.blade.kerf);
-    score.over_mm3 = volumes.over_m3 * 1e9;
-    score.under_mm3 = volumes.under_m3 * 1e9;
-    run.removed_mm3 = volumes.removed_m3 * 1e9;
-    run.plane = training::fit_cut_plane(bone, cut, run.task.blade.kerf);
-    if (run.plane) {
-        score.rms_mm = run.plane->rms * 1e3;
-        score.max_mm = run.plane->max * 1e3;
-        if (run.plane->angle) score.angle_deg = *run.plane->angle / degree;
-        run.severance =
-            training::severance_of(bone, cut, *run.plane, 0.5 * (run.task.blade.length + run.task.blade.stroke));
-        if (run.severance.severed)
-            if (const auto through = training::breakthrough_of(run.samples, cut, run.task.blade, run.severance)) {
-                score.breakthrough_mm = through->depth * 1e3;
-                score.breakthrough_mm_per_s = through->speed * 1e3;
-            }
-    }
+    score_cuts(run);
     score.spared = spared_of(run);
-    const training::MotionMeasures motion =
-        training::motion_of(run.samples, cut, run.task.limits.force.value_or(std::numeric_limits<double>::infinity()));
+    const training::MotionMeasures motion = training::motion_of(
+        run.samples, run.task.cuts.front(), run.task.limits.force.value_or(std::numeric_limits<double>::infinity()));
     score.mean_N = motion.mean_force;
     score.contact_s = motion.contact;
     score.over_limit_Ns = motion.over_limit;
     if (said.has_force && motion.contact > 0.0) score.shown_share = 1.0 - motion.without_force / motion.contact;
-    score.jerk = motion.jerk;
-    score.strokes = motion.strokes;
+    if (run.task.cuts.size() == 1) {
+        score.jerk = motion.jerk;
+        score.strokes = motion.strokes;
+    }
     score.seconds = motion.end - motion.begin;
     score.path_mm = motion.path * 1e3;
     score.heat_s = record.heat;

@@ -21,11 +21,21 @@ struct SparedScore {
     double closest_mm = 0.0;  ///< 0 if it was injured
 };
 
+/// One cut of a task. Empty: it was not made, or is too small to have a plane.
+struct CutScore {
+    std::string name;
+    std::optional<double> rms_mm, max_mm, angle_deg;
+    double over_mm3 = 0.0, under_mm3 = 0.0;
+    std::optional<double> breakthrough_mm, breakthrough_mm_per_s;
+};
+
 /// Minimum rendered fraction of a comparable attempt: below it, a part of the cut was made without force feedback.
 inline constexpr double complete_share = 0.99;
 
-/// Empty values: unknown in the run, or not applicable (a plane of a bone that was not cut).
+/// Empty values: unknown in the run, or not applicable (a plane of a bone that was not cut). Of several cuts: the rms over
+/// the places of all, the greatest of maxima, angles and plunges, the sums of volumes and strokes, the mean jerk.
 struct Score {
+    std::vector<CutScore> cuts;
     std::optional<double> rms_mm, max_mm, angle_deg;
     double over_mm3 = 0.0, under_mm3 = 0.0;
     std::vector<SparedScore> spared;
@@ -47,8 +57,8 @@ struct ScoredRun {
     training::Task task;
     Score score;
     bone::Bone before, after;
-    std::optional<training::CutPlane> plane;
-    training::Severance severance;
+    std::vector<std::optional<training::CutPlane>> planes;  ///< per cut of the task
+    std::vector<training::Severance> severances;
     std::vector<training::AttemptSample> samples;
     double removed_mm3 = 0.0, max_N = 0.0;
 };

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan guide: a printed guide for the cuts of a plan, as STL or 3MF.
-#include "tools/analysis/cutting_guide/plan_guide.hpp"
+#include "assets/bone/bone.hpp"
 #include "assets/file/outputs.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/plan/plan_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/cutting_guide/guide_task.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/report/cutting_guide/guide_report.hpp"
 #include "tools/report/figures/html_report.hpp"
@@ -22,7 +23,7 @@ namespace tactus::command {
 namespace {
 
 struct GuideOptions : PlanChoice {
-    std::filesystem::path out, report;
+    std::filesystem::path out, report, task;
     std::string bone = "fibula", printer = "sla", label;
     int cut = 0, sides = 3;
     std::optional<double> blade, clearance, offset;
@@ -65,7 +66,15 @@ void print_guide(const analysis::PlannedGuide& guide, const std::filesystem::pat
     fmt::print("for research, not a medical device\n");
 }
 
+/// SAW.toml has its bones in SAW-bone.vdb and SAW-guide.vdb; empty: no task.
+std::filesystem::path beside_task(const std::filesystem::path& task, const char* what) {
+    if (task.empty()) return {};
+    return task.parent_path() / fmt::format("{}-{}.vdb", task.stem().string(), what);
+}
+
 int make_guide(const GuideOptions& options) {
+    if (!options.task.empty() && options.task.extension() != ".toml")
+        throw Error(fmt::format("{}: a task is written as .toml", options.task.string()));
     const std::string kind = options.out.extension().string();
     if (kind != ".stl" && kind != ".3mf" && kind != ".ply")
         throw Error(fmt::format("{}: a guide is written as .stl, .3mf or .ply", options.out.string()));
@@ -73,21 +82,32 @@ int make_guide(const GuideOptions& options) {
     const std::filesystem::path folder = options.plan.parent_path();
     std::vector<std::filesystem::path> sources = plan::files_of(plan, folder);
     sources.push_back(options.plan);
-    file::check_outputs(sources, std::array{options.out, options.report});
+    const std::filesystem::path bone = beside_task(options.task, "bone"), body = beside_task(options.task, "guide");
+    file::check_outputs(sources, std::array{options.out, options.report, options.task, bone, body});
     const analysis::FlapStudy study(plan, plan::state_of(plan), folder);
     const analysis::PlannedGuide guide = analysis::plan_guide(study, plan.title, choice_of(options, study));
     if (!options.report.empty()) {
         const std::vector<report::ReportBlock> blocks = report::guide_blocks(guide);
         file::write_whole_file(options.report, report::html::page(plan.title, report::html_of(blocks, "guide")));
     }
+    if (!options.task.empty()) {
+        const analysis::GuideTask task = analysis::guide_task(guide, plan.title, bone.filename(), body.filename());
+        bone::save_bone(task.bone, bone);
+        bone::save_bone(task.guide, body);
+        file::write_whole_file(options.task, task.text);
+    }
     mesh::write_mesh(std::array{mesh::ColouredSurface{guide.made.surface, Vec3(0.35, 0.62, 0.72)}}, options.out);
     if (options.json) {
         file::Json json = analysis::guide_json(guide);
         json["file"] = options.out.string();
         if (!options.report.empty()) json["report"] = options.report.string();
+        if (!options.task.empty()) json["task"] = options.task.string();
         fmt::print("{}\n", json.dump(2));
     } else {
         print_guide(guide, options.out);
+        if (!options.task.empty())
+            fmt::print("{}: a task to saw in it, with {} and {}\n", options.task.string(), bone.string(),
+                       body.string());
     }
     return done;
 }
@@ -97,6 +117,8 @@ Action declare_plan_guide(VerbOptions& verb) {
     add_plan_options(verb, *o);
     verb.add("-o,--out", o->out, "STL, 3MF or PLY file, mm, LPS").required();
     verb.add("--report", o->report, "HTML page with pictures, dimensions and checks");
+    verb.add("--task", o->task,
+             "TOML file: a task for 'tactus session', to saw in the guide; its bones are written beside it");
     verb.add("--bone", o->bone, "the donor with its osteotomies, or the jaw with its resection")
         .one_of({"fibula", "jaw"})
         .shows_default();

@@ -38,6 +38,20 @@ Json json_of(const analysis::Score& s) {
         {"seconds", s.seconds},
         {"path_mm", s.path_mm},
         {"heat_s", or_null(s.heat_s)}};
+    if (s.cuts.size() > 1) {
+        json["cuts"] = Json::array();
+        for (const analysis::CutScore& one : s.cuts)
+            json["cuts"].push_back({{"name", one.name},
+                                    {"plane",
+                                     {{"rms_mm", or_null(one.rms_mm)},
+                                      {"max_mm", or_null(one.max_mm)},
+                                      {"angle_deg", or_null(one.angle_deg)}}},
+                                    {"over_mm3", one.over_mm3},
+                                    {"under_mm3", one.under_mm3},
+                                    {"breakthrough",
+                                     {{"depth_mm", or_null(one.breakthrough_mm)},
+                                      {"speed_mm_per_s", or_null(one.breakthrough_mm_per_s)}}}});
+    }
     for (const analysis::SparedScore& one : s.spared)
         json["spared"].push_back(
             {{"name", one.name}, {"injured_mm3", one.injured_mm3}, {"closest_mm", one.closest_mm}});
@@ -115,6 +129,12 @@ std::string score_text(std::span<const analysis::ScoredRun> runs,
                     text += fmt::format("   percentile {:.0f} of {}", *rank, reference[n].values.size());
             text += "\n";
         }
+        if (run.score.cuts.size() > 1)
+            for (const analysis::CutScore& one : run.score.cuts)
+                text += one.rms_mm ? fmt::format("  cut {}: {:.2f} mm rms, {:.2f} mm at most{} from the plan\n",
+                                                 one.name, *one.rms_mm, *one.max_mm,
+                                                 one.angle_deg ? fmt::format(", {:.2f}°", *one.angle_deg) : "")
+                                   : fmt::format("  cut {}: not made\n", one.name);
         for (const analysis::SparedScore& one : run.score.spared)
             if (one.injured_mm3 > 0.0) text += fmt::format("  injured: {}, {:.3g} mm³\n", one.name, one.injured_mm3);
         if (run.score.device_scale != 1.0)

@@ -69,14 +69,20 @@ std::string spared_table(const analysis::ScoredRun& run) {
 
 std::string pictures(const analysis::ScoredRun& run) {
     try {
-        const double t = run.task.cut.tolerance * 1e3;
-        return "<div class=\"two\">\n" +
-               html::picture(draw_cut_bone(run), "The bone; blue: the planned cut; red: what to spare") +
-               html::picture(draw_cut_face(run),
-                             fmt::format("Opened along the cut. Its wall: white as planned, blue and red {:.2g} mm or "
-                                         "more to either side; dark: not cut",
-                                         2.0 * t)) +
-               "</div>\n";
+        std::string out;
+        for (std::size_t n = 0; n < run.task.cuts.size(); ++n) {
+            const training::PlannedCut& cut = run.task.cuts[n];
+            const std::string name = run.task.cuts.size() > 1 ? fmt::format("Cut {}. ", html::escaped(cut.name)) : "";
+            out +=
+                "<div class=\"two\">\n" +
+                html::picture(draw_cut_bone(run, n), name + "The bone; blue: the planned cut; red: what to spare") +
+                html::picture(draw_cut_face(run, n),
+                              fmt::format("{}Opened along the cut. Its wall: white as planned, blue and red {:.2g} mm "
+                                          "or more to either side; dark: not cut",
+                                          name, 2e3 * cut.tolerance)) +
+                "</div>\n";
+        }
+        return out;
     } catch (const Error& error) {
         return fmt::format("<p class=\"small\">No pictures of the bone: {}</p>\n", html::escaped(error.what()));
     }

@@ -65,8 +65,7 @@ void add_bar(display::PictureMesh& mesh, const Vec3& from, const Vec3& to, const
 }
 
 /// Extent of the bone along the stroke within the planned plane, m.
-std::pair<double, double> extent_in_plan(const analysis::ScoredRun& run) {
-    const training::PlannedCut& cut = run.task.cut;
+std::pair<double, double> extent_in_plan(const analysis::ScoredRun& run, const training::PlannedCut& cut) {
     const training::CutBone bone{run.before.distance, run.after.distance};
     double low = 0.0, high = 0.0;
     const double step = bone.smallest_spacing(), most = std::min(0.1, cut.half_length);
@@ -80,9 +79,8 @@ std::pair<double, double> extent_in_plan(const analysis::ScoredRun& run) {
     return {low, high};
 }
 
-display::PictureMesh outline_of_plan(const analysis::ScoredRun& run) {
-    const training::PlannedCut& cut = run.task.cut;
-    auto [low, high] = extent_in_plan(run);
+display::PictureMesh outline_of_plan(const analysis::ScoredRun& run, const training::PlannedCut& cut) {
+    auto [low, high] = extent_in_plan(run, cut);
     if (!std::isfinite(cut.half_length)) {
         low -= 2e-3;
         high += 2e-3;
@@ -122,18 +120,19 @@ Vec3 deviation_colour(double distance, double tolerance) {
     return t < 0.0 ? glm::mix(Vec3(0.97), Vec3(0.10, 0.30, 0.85), -t) : glm::mix(Vec3(0.97), Vec3(0.80, 0.10, 0.10), t);
 }
 
-display::Image draw_cut_bone(const analysis::ScoredRun& run) {
-    const training::PlannedCut& cut = run.task.cut;
+display::Image draw_cut_bone(const analysis::ScoredRun& run, std::size_t index) {
+    const training::PlannedCut& cut = run.task.cuts[index];
     std::vector<display::PictureMesh> meshes{mesh_of(run.after.distance, [](const Vec3&) { return bone_colour; }),
-                                             outline_of_plan(run)};
+                                             outline_of_plan(run, cut)};
     add_spared(meshes, run);
     return view_of(meshes, glm::normalize(cut.feed + 0.35 * cut.stroke - 0.6 * cut.normal));
 }
 
-display::Image draw_cut_face(const analysis::ScoredRun& run) {
-    const training::PlannedCut& cut = run.task.cut;
+display::Image draw_cut_face(const analysis::ScoredRun& run, std::size_t index) {
+    const training::PlannedCut& cut = run.task.cuts[index];
+    const std::optional<training::CutPlane>& plane = run.planes[index];
     const training::CutBone bone{run.before.distance, run.after.distance};
-    const Vec3 point = run.plane ? run.plane->point : cut.point, normal = run.plane ? run.plane->normal : cut.normal;
+    const Vec3 point = plane ? plane->point : cut.point, normal = plane ? plane->normal : cut.normal;
     const double h = bone.smallest_spacing(), kerf = run.task.blade.kerf;
     // The half behind the cut, closed by the plane of the cut where bone was left.
     volume::Grid half = run.after.distance;
@@ -158,7 +157,8 @@ display::Figure draw_attempt(const analysis::ScoredRun& run) {
     display::Figure figure(920.0, 560.0);
     std::vector<display::FigurePoint> depth, distance, force;
     const std::size_t every = std::max<std::size_t>(1, run.samples.size() / 1500);
-    double deepest = task.cut.depth, widest = 2.0 * task.cut.tolerance, most = task.limits.force.value_or(1.0);
+    const training::PlannedCut& planned = task.cuts.front();
+    double deepest = planned.depth, widest = 2.0 * planned.tolerance, most = task.limits.force.value_or(1.0);
     for (std::size_t n = 0; n < run.samples.size(); ++n) {
         const training::AttemptSample& s = run.samples[n];
         const double pressed = glm::length(s.force);
@@ -166,7 +166,8 @@ display::Figure draw_attempt(const analysis::ScoredRun& run) {
         // All forces, so that no peak is left out; the rest thinned.
         force.push_back({s.time, pressed});
         if (n % every != 0) continue;
-        const training::CutDeviation now = training::deviation_of(task.cut, task.blade, s.pose);
+        const training::PlannedCut& nearest = task.cuts[training::nearest_cut(task.cuts, s.pose.position)];
+        const training::CutDeviation now = training::deviation_of(nearest, task.blade, s.pose);
         depth.push_back({s.time, now.depth * 1e3});
         deepest = std::max(deepest, now.depth);
         if (now.depth < -2e-3) continue;
@@ -181,13 +182,14 @@ display::Figure draw_attempt(const analysis::ScoredRun& run) {
     const Axes first = panel(0, {-5.0, 1.2e3 * deepest + 1.0, false});
     first.draw("Depth of the teeth along the planned feed", "", "mm");
     first.curve(depth, curve_colours[0], 0.0, false);
-    first.level(task.cut.depth * 1e3, curve_colours[1], "depth stop");
-    if (run.severance.severed) first.level(run.severance.exit * 1e3, curve_colours[2], "far side of the bone", true);
+    first.level(planned.depth * 1e3, curve_colours[1], "depth stop");
+    if (task.cuts.size() == 1 && run.severances.front().severed)
+        first.level(run.severances.front().exit * 1e3, curve_colours[2], "far side of the bone", true);
     const Axes second = panel(1, {-1.05e3 * widest, 1.05e3 * widest, false});
     second.draw("Distance from the planned plane, from 2 mm above the bone on", "", "mm");
     second.curve(distance, curve_colours[0], 0.0, false);
-    second.level(task.cut.tolerance * 1e3, curve_colours[1], "tolerance");
-    second.level(-task.cut.tolerance * 1e3, curve_colours[1], "");
+    second.level(planned.tolerance * 1e3, curve_colours[1], "tolerance");
+    second.level(-planned.tolerance * 1e3, curve_colours[1], "");
     const Axes third = panel(2, {0.0, 1.25 * most, false});
     third.draw("Force on the hand", "time, s", "N");
     third.curve(force, curve_colours[0], 0.0, false);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 
@@ -16,7 +17,10 @@ std::string score_words(const analysis::ScoredRun& run) {
     const analysis::Score& s = run.score;
     std::string text = fmt::format("removed {:.0f} mm³ in {:.1f} s; force {:.1f} N mean, {:.1f} N at most\n",
                                    run.removed_mm3, s.seconds, s.mean_N, run.max_N);
-    if (run.severance.severed) text += "the bone is sawn through\n";
+    const auto severed = std::ranges::count_if(run.severances, &training::Severance::severed);
+    if (run.severances.size() > 1)
+        text += fmt::format("{} of {} cuts go through the bone\n", severed, run.severances.size());
+    else if (severed > 0) text += "the bone is sawn through\n";
     if (s.rms_mm && s.max_mm)
         text += fmt::format("cut {:.2f} mm rms from the plan, {:.2f} mm at most\n", *s.rms_mm, *s.max_mm);
     text += fmt::format("cut too much: {:.1f} mm³; too little: {:.1f} mm³\n", s.over_mm3, s.under_mm3);
