@@ -13,8 +13,9 @@ namespace {
 
 /// Lagrange multipliers of the projection onto the planes in which all `count` gaps become zero; false when the planes
 /// are linearly dependent or a multiplier would be negative.
-bool corner(const Vec3& goal, const Vec3& from, const ProxyPlane* const* active, int count, Vec3& point) {
-    double a[3][3], b[3], x[3] = {};
+bool corner(const Vec3& goal, const Vec3& from, const ProxyPlane* const* active, int count, Vec3& point,
+            double (&x)[3]) {
+    double a[3][3], b[3];
     for (int i = 0; i < count; ++i) {
         b[i] = -active[i]->gap - glm::dot(active[i]->normal, goal - from);
         for (int j = 0; j < count; ++j) a[i][j] = glm::dot(active[i]->normal, active[j]->normal);
@@ -40,7 +41,9 @@ bool corner(const Vec3& goal, const Vec3& from, const ProxyPlane* const* active,
 
 }  // namespace
 
-Vec3 nearest_within(const Vec3& goal, const Vec3& from, std::span<const ProxyPlane> planes) noexcept {
+Vec3 nearest_within(const Vec3& goal, const Vec3& from, std::span<const ProxyPlane> planes,
+                    PlanePushes* pushes) noexcept {
+    if (pushes) *pushes = {};
     const std::size_t count = std::min<std::size_t>(planes.size(), 8);
     const auto allowed = [&](const Vec3& x) {
         for (std::size_t i = 0; i < count; ++i)
@@ -54,9 +57,16 @@ Vec3 nearest_within(const Vec3& goal, const Vec3& from, std::span<const ProxyPla
         const ProxyPlane* active[3];
         int n = 0;
         for (const std::size_t i : which) active[n++] = &planes[i];
-        if (!corner(goal, from, active, n, point) || !allowed(point)) return;
+        double push[3] = {};
+        if (!corner(goal, from, active, n, point, push) || !allowed(point)) return;
         const double d2 = glm::dot(point - goal, point - goal);
-        if (d2 < least) least = d2, best = point;
+        if (!(d2 < least)) return;
+        least = d2;
+        best = point;
+        if (!pushes) return;
+        *pushes = {};
+        n = 0;
+        for (const std::size_t i : which) (*pushes)[i] = push[n++];
     };
     for (std::size_t i = 0; i < count; ++i) {
         consider({i});

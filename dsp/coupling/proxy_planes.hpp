@@ -17,6 +17,7 @@ struct ProxyPlane {
     double gap = 0.0;  ///< m between proxy and surface; negative: penetration
     /// The interpolated normal of a round surface there; zero where facets are flat.
     Vec3 shaded{0.0};
+    std::size_t surface = 0;  ///< index of the surface that it belongs to
 };
 
 /// The contacts of a proxy: at most eight planes, the nearest ones.
@@ -34,7 +35,11 @@ private:
     std::size_t count_ = 0;
 };
 
+/// By how much each plane pushes a point away from its goal: Lagrange multipliers, m; 0 of planes that it does not touch.
+using PlanePushes = std::array<double, 8>;
+
 /// The point nearest to `goal` in all half-spaces, with planes relative to `from`. Uses at most eight planes.
-Vec3 nearest_within(const Vec3& goal, const Vec3& from, std::span<const ProxyPlane> planes) noexcept;
+Vec3 nearest_within(const Vec3& goal, const Vec3& from, std::span<const ProxyPlane> planes,
+                    PlanePushes* pushes = nullptr) noexcept;
 
 }  // namespace tactus::coupling

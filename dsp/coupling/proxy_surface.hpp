@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface that a ball-shaped proxy touches: a distance field or triangles, with an optional wave texture.
+// The surface that a ball-shaped proxy touches: a distance field or triangles; and a wave texture on it.
 //
 // Triangles are exact: the proxy's centre stays outside of the points nearer to them than its radius (Ruspini, Kolarov
 // and Khatib 1997), and a moving ball stops where it first touches one. For a field, the surface is the level set at
@@ -20,15 +20,28 @@ inline constexpr double point_radius = 1e-6;
 
 struct ProxyShape {
     double radius = 0.0;  ///< m, of the ball
-    double texture_height =
-        0.0;  ///< m, amplitude of the wave texture, from its mean, which is the surface, to the crest
-    double texture_length = 2e-3;  ///< m, wavelength along each axis of the body
     double step = 0.25e-3;  ///< m: maximum length of a step along a field; never more than half a voxel
+};
 
-    /// Radius of the ball that keeps off triangles, m: small enough to reach the troughs of their texture.
-    double core() const noexcept { return std::max(radius - texture_height, std::min(radius, point_radius)); }
-    /// By how much the texture of triangles lies above them, m: a point cannot be in a trough below a triangle.
-    double raised() const noexcept { return texture_height - (radius - core()); }
+/// Waves along the two axes of a body that lie best in its surface, each with half of the height.
+struct ProxyTexture {
+    /// Largest height over length: the steepest slope is then 0.9. A steeper wave is felt as a row of walls.
+    static constexpr double max_ratio = 0.2;
+
+    double height =
+        0.0;  ///< m, from its mean, which is the surface, to the crest; counts up to `max_ratio` of the length
+    double length = 2e-3;  ///< m, of a wave along each axis of the body
+
+    double used_height() const noexcept { return std::max(0.0, std::min(height, max_ratio * length)); }
+    /// Of the steepest place of a flat face, m/m.
+    double max_slope() const noexcept;
+
+    struct Lift {
+        double height = 0.0;  ///< m above the mean
+        Vec3 slope{0.0};  ///< its gradient, in the surface
+    };
+    /// At a point of a surface with this unit normal, both in the frame of the body.
+    Lift at(const Vec3& point, const Vec3& normal) const noexcept;
 };
 
 /// One surface: its triangles if there are any, otherwise its distance field.
@@ -39,22 +52,22 @@ struct ProxySurface {
     const geometry::TriangleTree* triangles = nullptr;
     Pose pose;
 
-    /// A field, or a surface with texture, seen from a position: one smooth surface.
+    /// A field seen from a position: one smooth surface.
     struct Level {
         bool seen = false;  ///< a direction out of the body was found
         ProxyPlane plane;
         double room = 0.0;  ///< m: a move of this length in any direction is free
     };
 
-    /// True for triangles without texture, which do not need `level`.
-    bool is_exact(const ProxyShape& shape) const noexcept { return triangles && !(shape.texture_height > 0.0); }
-    /// These three spend triangles of a budget. When it is spent, nothing is found and no move is free.
-    Level level(const Vec3& at, const ProxyShape& shape, Budget& budget) const noexcept;
-    /// Maximum move beyond what is free, m.
+    /// Of a surface without triangles.
+    Level level(const Vec3& at, const ProxyShape& shape) const noexcept;
+    /// Maximum move beyond what is free, m; of a surface without triangles.
     double stride(const ProxyShape& shape) const noexcept;
-    /// Planes of all triangles that a ball at `at` touches.
-    void touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into, Budget& budget) const noexcept;
-    /// Distance that the core of a ball can move along the unit vector `direction` before it touches a triangle, m; at most
+    /// These two spend triangles of a budget. When it is spent, nothing is found and no move is free.
+    /// Planes of all triangles that a ball at `at` touches, as those of the surface `index`.
+    void touched(const Vec3& at, const ProxyShape& shape, std::size_t index, ProxyPlanes& into,
+                 Budget& budget) const noexcept;
+    /// Distance that a ball can move along the unit vector `direction` before it touches a triangle, m; at most
     /// `length`.
     double free_distance(const Vec3& at, const Vec3& direction, double length, const ProxyShape& shape,
                          Budget& budget) const noexcept;

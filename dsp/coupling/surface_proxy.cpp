@@ -20,7 +20,7 @@ void SurfaceProxy::reset(const Vec3& at) noexcept {
     state_ = {};
     friction_ = unset;
     stride_ = far;
-    state_.proxy = at;
+    state_.proxy = at_ = at;
     started_ = true;
     seen_count_ = 0;
 }
@@ -28,23 +28,51 @@ void SurfaceProxy::reset(const Vec3& at) noexcept {
 SurfaceProxy::View SurfaceProxy::look(const Vec3& at, std::span<const ProxySurface> surfaces) noexcept {
     View view;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        if (surfaces[i].is_exact(shape_)) {
-            surfaces[i].touched(at, shape_, view.planes, budget_);
+        if (surfaces[i].triangles) {
+            surfaces[i].touched(at, shape_, i, view.planes, budget_);
             continue;
         }
-        view.levels[i] = surfaces[i].level(at, shape_, budget_);
+        view.levels[i] = surfaces[i].level(at, shape_);
+        view.levels[i].plane.surface = i;
         if (view.levels[i].seen && view.levels[i].plane.gap < proxy_touch) view.planes.add(view.levels[i].plane);
     }
     for (const ProxyPlane& plane : view.planes.all()) view.deepest = std::max(view.deepest, -plane.gap);
     return view;
 }
 
+ProxyTexture::Lift SurfaceProxy::lift(const Vec3& at, const Vec3& goal,
+                                      std::span<const ProxySurface> surfaces) noexcept {
+    const View view = look(at, surfaces);
+    PlanePushes pushes;
+    nearest_within(goal, at, view.planes.all(), &pushes);
+    ProxyTexture::Lift sum;
+    double all = 0.0;
+    for (std::size_t i = 0; i < view.planes.all().size(); ++i) {
+        if (!(pushes[i] > 0.0)) continue;
+        const ProxyPlane& plane = view.planes.all()[i];
+        const Pose& pose = surfaces[plane.surface].pose;
+        // Below the hand in this plane: in a corner the proxy stays while the hand moves on.
+        const Vec3 lag = goal - at - plane.normal * glm::dot(goal - at, plane.normal);
+        const Vec3 foot = at + lag - plane.normal * (shape_.radius + plane.gap);
+        const Pose back = pose.inverse();
+        const ProxyTexture::Lift one = settings.texture.at(back.apply(foot), back.rotate(plane.normal));
+        sum.height += pushes[i] * one.height;
+        sum.slope += pushes[i] * pose.rotate(one.slope);
+        all += pushes[i];
+    }
+    if (all > 0.0) {
+        sum.height /= all;
+        sum.slope /= all;
+    }
+    return sum;
+}
+
 Vec3 SurfaceProxy::settle(Vec3 at, std::span<const ProxySurface> surfaces) noexcept {
     for (int round = 0; round < 8; ++round) {
         bool moved = false;
         for (const ProxySurface& surface : surfaces) {
-            if (surface.is_exact(shape_)) continue;
-            const ProxySurface::Level level = surface.level(at, shape_, budget_);
+            if (surface.triangles) continue;
+            const ProxySurface::Level level = surface.level(at, shape_);
             if (!level.seen || level.plane.gap > -0.5 * proxy_hover) continue;
             const Vec3 out = level.plane.normal * -level.plane.gap;
             const double length = glm::length(out);
@@ -67,7 +95,7 @@ bool SurfaceProxy::is_open(const Vec3& a, const View& from, const Vec3& b, const
         if (here.room > glm::length(b - a)) continue;
         if (here.seen && there.seen && glm::dot(here.plane.normal, there.plane.normal) > 0.0) continue;
         // Two opposite walls, or both sides of a thin one: in the middle the field decides.
-        const double middle = surfaces[i].level(0.5 * (a + b), shape_, budget_).room;
+        const double middle = surfaces[i].level(0.5 * (a + b), shape_).room;
         if (middle < std::min(here.room, there.room)) return false;
     }
     return true;
@@ -85,7 +113,7 @@ Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurfac
         const Vec3 direction = (target - from) / length;
         double free = std::min(length * share, stride_);
         for (std::size_t i = 0; i < surfaces.size(); ++i) {
-            if (!surfaces[i].is_exact(shape_))
+            if (!surfaces[i].triangles)
                 free = std::min(free, std::max(here.levels[i].room, share * surfaces[i].stride(shape_)));
         }
         // One move may spend a part of the budget: a shorter one tests fewer triangles.
@@ -127,8 +155,8 @@ void SurfaceProxy::follow(std::span<const ProxySurface> surfaces) noexcept {
             if (now.pose.position == then.pose.position && now.pose.orientation == then.pose.orientation) continue;
             // In the frame of the surface the proxy moves.
             const ProxySurface at_rest{now.map, now.triangles, {}};
-            const Vec3 from = then.pose.inverse().apply(state_.proxy), to = now.pose.inverse().apply(state_.proxy);
-            state_.proxy = now.pose.apply(lead(from, to, {&at_rest, 1}));
+            const Vec3 from = then.pose.inverse().apply(at_), to = now.pose.inverse().apply(at_);
+            at_ = now.pose.apply(lead(from, to, {&at_rest, 1}));
         }
     seen_count_ = surfaces.size();
     std::ranges::copy(surfaces, seen_.begin());
@@ -153,16 +181,22 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
     if (!is_finite(goal) || !(glm::length(goal) < 1e3)) return state_;
     if (!started_) reset(goal);
     surfaces = surfaces.first(std::min(surfaces.size(), max_surfaces));
+    const ProxyTexture& texture = settings.texture;
+    const double crest = texture.used_height();
     shape_ = settings.shape;
-    shape_.radius = std::max(shape_.radius, point_radius);
+    shape_.radius = std::max(shape_.radius, point_radius) + crest;
     budget_.triangles = max_triangles;
     follow(surfaces);
-    const Vec3 before = state_.proxy;
+    const Vec3 before = at_;
     Vec3 smooth = lead(before, goal, surfaces);
-    const double depth = glm::length(smooth - goal);
-    state_.in_contact = depth > proxy_touch;
+    const double distance = glm::length(smooth - goal);
+    state_.normal = distance > proxy_touch ? (smooth - goal) / distance : Vec3(0.0);
+    const ProxyTexture::Lift wave =
+        crest > 0.0 && distance > proxy_touch ? lift(smooth, goal, surfaces) : ProxyTexture::Lift{};
+    const double below = crest - wave.height;  // the crests
+    const double depth = distance - below;
+    state_.in_contact = depth > proxy_touch && distance > proxy_touch;
     state_.sticks = false;
-    state_.normal = state_.in_contact ? (smooth - goal) / depth : Vec3(0.0);
     if (state_.in_contact && settings.static_friction > 0.0) {
         const Vec3 lag = before - smooth - state_.normal * glm::dot(before - smooth, state_.normal);
         const double behind = glm::length(lag);
@@ -173,12 +207,21 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
         smooth = lead(lead(smooth, held + state_.normal * proxy_touch, surfaces), held - state_.normal * proxy_touch,
                       surfaces);
     }
-    if (!state_.in_contact) friction_ = unset;
-    state_.proxy = smooth;
-    Vec3 force = settings.stiffness * (smooth - goal);
+    at_ = smooth;
+    state_.proxy = state_.in_contact ? smooth - state_.normal * below : goal;
+    state_.force = Vec3(0.0);
+    if (!state_.in_contact) {
+        friction_ = unset;
+        state_.normal = Vec3(0.0);
+        return state_;
+    }
+    // Spring and waves together stay within the limit, each by a law of its own, so that the spring keeps its energy.
+    const double most = settings.max_force / (1.0 + (crest > 0.0 ? texture.max_slope() : 0.0));
+    Vec3 force = settings.stiffness * (state_.proxy - goal);
     const double size = glm::length(force);
-    if (size > settings.max_force) force *= settings.max_force / size;
-    state_.force = is_finite(force) ? force : Vec3(0.0);
+    if (size > most) force *= most / size;
+    force -= wave.slope * std::min(settings.stiffness * depth, most);
+    if (is_finite(force)) state_.force = force;
     return state_;
 }
 

@@ -5,8 +5,15 @@
 // The proxy moves from its last position towards the hand as far as surfaces permit, so it stays on the side it came
 // from and the spring force from hand to proxy never reverses. In contact it moves to the point nearest to the hand
 // within the half-spaces of all touched surfaces (god-object: Zilles and Salisbury 1995; ball and force shading:
-// Ruspini, Kolarov and Khatib 1997). No move passes through a surface, however far the hand has jumped. Texture is a wave
-// on the surface.
+// Ruspini, Kolarov and Khatib 1997). No move passes through a surface, however far the hand has jumped.
+//
+// Texture is no part of that surface: a god object on waves stays in a trough until it is past the next crest, and then
+// jumps, as soon as the hand is deeper below the surface than the crests are round. Instead the waves lengthen and shorten
+// the spring. The proxy moves on the smooth envelope of the crests, at the distance D from the hand, and the energy is
+// ½·K·g², with g = D − height + lift at the proxy. Its force, K·g along the normal and −K·g·slope along the surface, is a
+// continuous function of the hand's position, however deep the hand is, and on flat faces the gradient of that energy. On a
+// surface of curvature κ the second part is short by a share κ·D: what that gives or takes on a closed path is bounded by the
+// energy cap of device_output.
 //
 // Friction is a cone about that point (Harwin and Melder 2002): the proxy stays where it is while it lies inside of the
 // cone, and otherwise follows to its rim. The cone has a state: it is that of static friction until the proxy slides,
@@ -27,6 +34,7 @@ namespace tactus::coupling {
 
 struct ProxySettings {
     ProxyShape shape;  ///< a point is a ball of a micrometre
+    ProxyTexture texture;
     double stiffness = 1000.0;  ///< N/m, between hand and proxy
     double max_force = 10.0;  ///< N
     double static_friction = 0.0, dynamic_friction = 0.0;  ///< coefficients; the second is at most the first
@@ -34,7 +42,7 @@ struct ProxySettings {
 };
 
 struct ProxyState {
-    Vec3 proxy{0.0};
+    Vec3 proxy{0.0};  ///< m, on the waves of the texture
     Vec3 force{0.0};  ///< N, on the hand
     Vec3 normal{0.0};  ///< of the touched surface, unit; zero when free
     bool in_contact = false;
@@ -68,6 +76,8 @@ private:
     };
 
     View look(const Vec3& at, std::span<const ProxySurface> surfaces) noexcept;
+    /// The texture below a proxy at `at` that is pushed away from `goal` by the planes that it touches.
+    ProxyTexture::Lift lift(const Vec3& at, const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept;
     /// Projects out of fields that a move has entered.
     Vec3 settle(Vec3 at, std::span<const ProxySurface> surfaces) noexcept;
     /// False when the line between the two positions crosses a wall of a field.
@@ -78,7 +88,8 @@ private:
     /// How much of a proxy's distance `behind` the frictionless position friction keeps, m, at `depth` m below it.
     double held_back(double behind, double depth) noexcept;
 
-    ProxyShape shape_;
+    ProxyShape shape_;  // up to the crests of the texture
+    Vec3 at_{0.0};  // m, of the proxy on the envelope of the crests
     ProxySurface::Budget budget_;  // of this update
     double stride_ = far;  // m: longest move that is tried, on triangles
     double friction_ = unset;  // coefficient now; unset: that of static friction

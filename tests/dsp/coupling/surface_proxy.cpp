@@ -211,8 +211,8 @@ TEST_CASE("a proxy that turned round sticks again before it slides the other way
 TEST_CASE("texture makes the force of an even slide wave by the length of its waves") {
     const coupling::ProxySurface surface{&plate_map(), nullptr, {}};
     coupling::SurfaceProxy proxy;
-    proxy.settings.shape.texture_height = 0.1 * mm;
-    proxy.settings.shape.texture_length = 2.0 * mm;
+    proxy.settings.texture.height = 0.1 * mm;
+    proxy.settings.texture.length = 2.0 * mm;
     proxy.reset({-5.0 * mm, 0.0, 2.0 * mm});
     double least = 1e9, greatest = 0.0, first = 0.0;
     for (int n = 0; n < 400; ++n) {
@@ -233,7 +233,8 @@ TEST_CASE("a texture on triangles holds back neither a ball nor a point that has
         for (const double height : {4e-3 * mm, 0.1 * mm}) {
             const coupling::ProxySurface surface{nullptr, &plate_triangles(), {}};
             coupling::SurfaceProxy proxy;
-            proxy.settings.shape = {radius, height, 2.0 * mm, 0.25 * mm};
+            proxy.settings.shape.radius = radius;
+            proxy.settings.texture = {height, 2.0 * mm};
             proxy.reset({-4.0 * mm, 0.3 * mm, 4.0 * mm});
             double most = 0.0;
             for (int n = 0; n < 800; ++n) {
@@ -255,7 +256,8 @@ TEST_CASE("texture reaches its height on flat and curved faces and does not lift
         const auto lifts = [&](const contact::Voxmap& map, const Vec3& start, auto&& hand_at, auto&& lift_of) {
             const coupling::ProxySurface surface{&map, nullptr, {}};
             coupling::SurfaceProxy proxy;
-            proxy.settings.shape = {1.0 * mm, height, 4.0 * mm, 0.25 * mm};
+            proxy.settings.shape.radius = 1.0 * mm;
+            proxy.settings.texture = {height, 4.0 * mm};
             proxy.settings.max_force = 100.0;
             proxy.reset(start);
             double low = 1.0, high = -1.0;
@@ -289,13 +291,83 @@ TEST_CASE("texture reaches its height on flat and curved faces and does not lift
     }
 }
 
+TEST_CASE("a ball larger than the margin of a field follows the hand on it") {
+    const coupling::ProxySurface surface{&plate_map(), nullptr, {}};
+    for (const double radius : {2.0 * mm, 3.0 * mm, 6.0 * mm}) {
+        coupling::SurfaceProxy proxy;
+        proxy.settings.shape.radius = radius;
+        proxy.settings.max_force = 1e3;
+        proxy.reset({-5.0 * mm, 0.0, radius + 2.0 * mm});
+        double most = 0.0, off = 0.0;
+        for (int n = 0; n < 1000; ++n) {
+            const double x = -5.0 * mm + 0.01 * mm * n;
+            const Vec3 hand(x, 0.3 * x, std::max(radius - 3.0 * mm, radius + 2.0 * mm - 0.05 * mm * n));
+            const Vec3 at = proxy.update(hand, {&surface, 1}).proxy;
+            if (n < 200) continue;
+            most = std::max(most, glm::length(Vec3(at.x - hand.x, at.y - hand.y, 0.0)));
+            off = std::max(off, std::abs(at.z - radius - 1.0 * mm));
+        }
+        CAPTURE(radius / mm, most / mm, off / mm);
+        CHECK(most < 1e-6);
+        CHECK(off < 0.01 * mm);
+    }
+}
+
+TEST_CASE("a texture does not jump, however deep the hand is, and gives no energy on a flat face") {
+    for (const coupling::ProxySurface& surface : both(plate_map(), plate_triangles()))
+        for (const double length : {0.5 * mm, 2.0 * mm})
+            for (const double height : {0.1 * mm, 2.0 * mm}) {
+                coupling::SurfaceProxy proxy;
+                proxy.settings.shape.radius = 0.5 * mm;
+                proxy.settings.texture = {height, length};
+                proxy.settings.max_force = 5.0;
+                const double used = std::min(height, 0.2 * length);
+                CHECK(proxy.settings.texture.used_height() == used);
+                CHECK(proxy.settings.texture.max_slope() < 0.9);
+                double work = 0.0, change = 0.0, greatest = 0.0, step = 0.0;
+                Vec3 last(0.0), at(-3.0 * mm, 0.2 * mm, 3.0 * mm);
+                proxy.reset(at);
+                bool is_first = true;
+                const auto go = [&](const Vec3& to, int count) {
+                    const Vec3 from = at;
+                    for (int n = 1; n <= count; ++n) {
+                        const Vec3 next = from + (to - from) * (static_cast<double>(n) / count);
+                        const Vec3 force = proxy.update(next, {&surface, 1}).force;
+                        if (!is_first) {
+                            work += 0.5 * glm::dot(force + last, next - at);
+                            change = std::max(change, glm::length(force - last));
+                            step = std::max(step, glm::length(next - at));
+                        }
+                        is_first = false;
+                        greatest = std::max(greatest, glm::length(force));
+                        last = force;
+                        at = next;
+                    }
+                };
+                // 3 mm deep, across the waves while it is pressed, and back above.
+                go({-3.0 * mm, 0.2 * mm, -1.5 * mm}, 1500);
+                go({-1.3 * mm, 0.9 * mm, -1.5 * mm}, 1000);
+                go({-1.1 * mm, 1.3 * mm, 0.5 * mm}, 1000);
+                go({-1.1 * mm, 1.3 * mm, 3.0 * mm}, 800);
+                go({-3.0 * mm, 0.2 * mm, 3.0 * mm}, 100);
+                const double k = 2.0 * std::numbers::pi / length;
+                CAPTURE(surface.triangles != nullptr, length / mm, height / mm, work * 1e6, change, greatest);
+                CHECK(greatest <= 5.0);
+                CHECK(greatest > 2.0);
+                // The slope of the law: the spring, the slope of the waves twice, and their curvature times the depth.
+                CHECK(change < 1000.0 * 3e-6 * (2.0 + 3.0 * mm * used * k * k));
+                CHECK(std::abs(work) < 2e-6);
+            }
+}
+
 TEST_CASE("a proxy on triangles tests a bounded number of them, never enters and arrives in the end") {
     static const geometry::TriangleTree tree(
         geometry::iso_surface(test::map_of(contact::Ball{12.0 * mm}, 0.35 * mm).grid, 0.0f, false));
     const coupling::ProxySurface surface{nullptr, &tree, {}};
     for (const double texture : {0.0, 0.1 * mm}) {
         coupling::SurfaceProxy proxy;
-        proxy.settings.shape = {2.0 * mm, texture, 2.0 * mm, 0.25 * mm};
+        proxy.settings.shape.radius = 2.0 * mm;
+        proxy.settings.texture = {texture, 2.0 * mm};
         proxy.settings.static_friction = proxy.settings.dynamic_friction = 0.3;
         proxy.reset({16.0 * mm, 0.0, 0.0});
         std::int64_t most = 0;
