@@ -24,6 +24,7 @@ public:
     static constexpr double turn_s = 0.05;  ///< in which a pull goes over to another place
     static constexpr double damping_s = 0.01;  ///< time constant of the damped directions
     static constexpr double hysteresis = 0.1e-3;  ///< m, by which another place must be nearer
+    static constexpr double still = 1e-6;  ///< m: a nearest place that moves less does not jump, nor does its pull
 
     /// The next hand is another one: nothing turns to it.
     void reset() noexcept { *this = {}; }
@@ -38,7 +39,7 @@ public:
         fade(dt);
         // Of two places that are as near the hand keeps its own: rounding does not send it to and fro.
         Vec3 aim = nearest;
-        if (is_known_ && glm::distance(nearest, nearest_) > 4.0 * glm::distance(p, p_) + 0.1e-3) {
+        if (is_known_ && glm::distance(nearest, nearest_) > 4.0 * glm::distance(p, p_) + still) {
             if (glm::distance(p, nearest_) - glm::distance(p, nearest) < hysteresis) aim = nearest_;
             else leave(nearest_);
         }

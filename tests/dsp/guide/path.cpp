@@ -233,6 +233,28 @@ TEST_CASE("rounding does not send a hand to and fro between two places that are 
     CHECK(most < 80.0 * dt / guide::TurningPull::turn_s + 0.1);
 }
 
+TEST_CASE("a pull does not jump between places that are near each other") {
+    constexpr double dt = 1e-3, stiffness = 20e3;
+    const guide::GuideLaw law{.stiffness = stiffness, .damping = 0.0, .max_force = 50.0, .reach = 0.0};
+    // Across the bisector of a bend, near its corner: the two nearest places are 5 to 90 µm apart.
+    const guide::Path path(std::vector<Vec3>{{-0.02, 0.0, 5e-3}, {0.0, 0.0, 0.0}, {0.02, 0.0, 5e-3}}, false, false);
+    for (const double z : {1e-5, 5e-5, 2e-4}) {
+        guide::TurningPull pull;
+        double most = 0.0;
+        Vec3 before(0.0);
+        for (int k = 0; k < 400; ++k) {
+            const Vec3 p(1e-9 * (k - 200), 0.0, z);
+            const guide::Path::Place place = path.nearest(p);
+            const Vec3 now = pull.on(law, p, {}, place.point, place.tangent, dt);
+            if (k > 0) most = std::max(most, glm::distance(now, before));
+            before = now;
+        }
+        CAPTURE(z, most);
+        CHECK(most <
+              1.1 * stiffness * guide::TurningPull::still + 2.0 * stiffness * z * dt / guide::TurningPull::turn_s);
+    }
+}
+
 TEST_CASE("damping turns with a path, and only takes") {
     const guide::GuideLaw law{.stiffness = 0.0, .damping = 10.0, .max_force = 50.0, .reach = 0.0};
     guide::TurningPull pull;
