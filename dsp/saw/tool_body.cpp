@@ -268,15 +268,18 @@ void ToolBody::unhook(const Field& field, BodyPoint& p, double voxel) const noex
         return;
     }
     const double rough = p.radius - 0.25 * voxel;
-    Vec3 to = p.at + axes_[1] * back;
-    for (int halving = 0; halving < 4; ++halving) {
+    const auto may_be_at = [&](const Vec3& to) {
         const double there = field.value(to);
-        if (there >= rough || there >= field.value(p.at)) {
-            p.at = to;
-            return;
-        }
-        to = 0.5 * (to + p.at);
+        return there >= rough || there >= field.value(p.at);
+    };
+    // As far back as it may, to a thousandth of the way: a coarser search would let go of it in steps.
+    double inside = 1.0, free = 0.0;
+    if (may_be_at(p.at + axes_[1] * back)) free = 1.0;
+    for (int halving = 0; halving < 10 && free < 1.0; ++halving) {
+        const double middle = 0.5 * (free + inside);
+        (may_be_at(p.at + axes_[1] * (back * middle)) ? free : inside) = middle;
     }
+    p.at += axes_[1] * (back * free);
 }
 
 template <class Field>

@@ -19,6 +19,9 @@ constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little
 constexpr double passing = 0.02;  // s, time constant of the lag of a tooth in bone that it has not cut
 constexpr double settling = 0.02;  // s in which a tooth that came to bear takes its share of the thrust
 constexpr double kept_every = 0.006;  // s; seven rows outlast two ticks of carving at 60 Hz
+// m: a tooth that bone stops rests this much deeper than where it would be free. More would be a jump of the force when it is
+// freed.
+constexpr double grip = 1e-6;
 constexpr int max_plunges = 32, max_row_slides = 12, max_climbs = 12;
 
 }  // namespace
@@ -120,7 +123,10 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         if (held) tooth.lag = (goal(tooth) - tooth.at) * axes_;
         squares_[n] = held ? tooth.square() : 0.0;
         tooth.fresh = false;
-        tooth.touched = tooth.density[1] > 0.0;
+        // Under a saw that stands, a tooth that lost touch advances over some ticks: at a grazing angle a gap of a part of a
+        // voxel is a long way along the blade.
+        const double kept = drive.running ? 0.0 : std::exp(-drive.dt / passing);
+        tooth.touch = tooth.density[1] > 0.0 ? 1.0 : tooth.touch * kept;
         tooth.density = {};
         if (tooth.seated) pursue(walk, n);
         else pass(bone, tooth, drive.dt);
@@ -190,9 +196,12 @@ void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
     const Vec3 to = goal(tooth);
     const double distance = glm::length(to - tooth.at);
     if (distance < 1e-12) return;
-    // Far from bone, or drawn back to where there is none.
+    // Far from bone, or drawn back to where there is none. Only the way back leads through bone: a push from the side does
+    // not take a tooth through a wall.
+    const Vec3 back = axes_[1] * glm::dot(to - tooth.at, axes_[1]);
     const bool far = walk.bone.value(tooth.at) > radius_ + distance + pitch_ + walk.front.ahead;
-    if (far || (glm::dot(to - tooth.at, axes_[1]) <= 0.0 && walk.bone.value(to) >= radius_)) {
+    if (far || (glm::dot(back, axes_[1]) <= 0.0 && walk.bone.value(to) >= radius_ &&
+                is_way_free(walk.bone, tooth.at + back, to, radius_, walk.front.ahead))) {
         tooth.at = to;
         return;
     }
@@ -282,14 +291,16 @@ double ToothRow::descend(const Walk& walk, std::size_t n, double way) noexcept {
     const Vec3 &y = axes_[1], &z = axes_[2];
     double gone = 0.0;
     // In contact the interpolated distance ripples: hysteresis between touching and free.
-    const double slack = (tooth.touched ? 0.15 : 0.02) * walk.voxel;
+    const double slack = (0.02 + 0.13 * tooth.touch) * walk.voxel;
+    // A running saw cuts what its teeth rest on: they go as deep as they may.
+    const double rest = walk.drive.running ? 0.0 : slack - grip;
     for (int move = 0; move < max_plunges && way - gone > 1e-12; ++move) {
         const carve::RoundFront::Contact contact = walk.front.look(walk.bone, tooth.at, y, z, axes_[0] * pitch_, slack);
         if (contact.density > 0.0) {
             tooth.density[1] = contact.density;
             break;
         }
-        const double step = std::min(way - gone, contact.clear);
+        const double step = std::min(way - gone, std::max(contact.clear - rest, grip));
         tooth.at += y * step;
         gone += step;
     }
@@ -319,17 +330,18 @@ void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
     }
     const Vec3 direction = axes_[axis] * sign, across = axis == 0 ? z : y;
     // As deep as the floor's ripple and a late version of the bone need: less would lift a tooth with every slide.
-    const double level = -walk.front.ahead - 0.15 * walk.voxel;
+    const double level = -walk.front.ahead - 0.15 * walk.voxel, slack = 0.1 * walk.voxel;
     for (int move = 0; move < max_row_slides && side - held > 1e-12; ++move) {
         const carve::RoundFront::Contact contact =
-            walk.front.look(walk.bone, tooth.at, direction, across, Vec3(0.0), 0.1 * walk.voxel);
+            walk.front.look(walk.bone, tooth.at, direction, across, Vec3(0.0), slack);
         if (contact.density > 0.0) {
             tooth.density[static_cast<std::size_t>(axis)] = contact.density;
             return;
         }
         // The round front is no wider than a ball of its radius: as far as that is free, and else by half a voxel.
         const double clear = walk.bone.value(tooth.at) - radius_ - walk.front.ahead;
-        const double step = std::min({side - held, contact.clear, std::max(clear, 0.5 * walk.voxel)});
+        const double step =
+            std::min({side - held, std::max(contact.clear - slack + grip, grip), std::max(clear, 0.5 * walk.voxel)});
         const double before = walk.front.floor(walk.bone, tooth.at, y, z);
         Vec3 to = tooth.at + direction * step;
         double climbed = 0.0;

@@ -29,7 +29,7 @@ struct Tooth {
     double bending = 1.0;  ///< share of the contact stiffness across the blade that bending leaves
     bool seated = false;  ///< false: the blade drew it back into bone; its lag fades, and it bears again once it is out
     bool fresh = false;
-    bool touched = false;  ///< bone stopped its advance in the last tick
+    double touch = 0.0;  ///< 1 while bone stops its advance, then fading to 0: how far from bone it still rests
 
     /// Squared length of the lag; across the blade it counts by the share of stiffness.
     double raw_square() const noexcept { return lag.x * lag.x + lag.y * lag.y + bending * lag.z * lag.z; }

@@ -54,8 +54,10 @@ struct SawBlade {
     Out<bool> waiting{"the blade lies in bone and has no force until it is out"};
     Out<double> rendered{"share of the wanted force that the device was given in the last tick", "1"};
     Out<carve::CutFront> front{"how far the teeth have cut; wire it to carve.front as batch"};
-    Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm",
-                    "upper bound of the stiffness that the hand feels, for any number of points in contact"};
+    static constexpr double max_felt_stiffness = 40e3;  // N/m
+    Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "40 N/mm",
+                    "upper bound of the stiffness that the hand feels, for any number of points in contact; times "
+                    "'device_scale' at most 40 N/mm"};
     Asset<training::Task> guide{optional,
                                 "task whose guide stops the blade, which never cuts it, and whose slots hold it"};
     Param guide_stiffness{structural, "10 N/mm", "0.01 N/mm", "50 N/mm",
@@ -86,6 +88,12 @@ struct SawBlade {
     }
 
     void prepare(const Setup& setup) {
+        // Teeth know the bone to 0.15 of a voxel, 0.08 mm of 0.5 mm: on a stiffer tool that is a jump of more than 3 N.
+        if (stiffness * device_scale > max_felt_stiffness)
+            setup.fail(
+                fmt::format("the hand would feel {:.3g} N/mm, 'stiffness' times 'device_scale', and in it the "
+                            "voxels of the bone as jumps; at most {:.3g} N/mm",
+                            stiffness * device_scale * 1e-3, max_felt_stiffness * 1e-3));
         saw::SawShape shape;
         shape.kind = sagittal ? saw::SawKind::sagittal : saw::SawKind::reciprocating;
         shape.length = length;
@@ -143,7 +151,7 @@ struct SawBlade {
                 pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get()) || !is_seated()};
         const Pose at = guided(drive);
         const saw::SawContact now = blade_->step(bone.get(), at, drive, law_, guide_body_ ? &guide_now_ : nullptr);
-        wrench = hold_.on_hand(now.wrench) * device_scale;
+        wrench = hold_.on_hand(now.wrench) * std::min<double>(device_scale, max_felt_stiffness / stiffness);
         held = at;
         slot = hold_.slot() + 1;
         load = now.thrust;

@@ -167,3 +167,21 @@ TEST_CASE("a burr rests on a bone whose grid ends nearer to it than the burr is 
     }
     CHECK(step < 2.0);
 }
+
+TEST_CASE("teeth that are pressed sideways through a thin plate stay on the side that they came from") {
+    const auto bone = bone_block({.low = {-0.02, -0.02, -0.0015}, .high = {0.02, 0.02, 0.0}, .voxel = 0.5e-3});
+    saw::SawShape shape;
+    shape.length = 0.02;
+    saw::SawBlade blade(shape, 1000.0);
+    const saw::Drive still{false, 0.0, 1e-3};
+    double last = 0.0;
+    // The blade lies flat on the plate and goes down by 4 mm.
+    for (int n = 0; n < 500; ++n) {
+        const double z = 1e-3 - 1e-5 * n;
+        const saw::SawContact now = blade.step(bone->current(), {{0.0, 0.0, z}, {1.0, 0.0, 0.0, 0.0}}, still, {});
+        CAPTURE(z, last);
+        REQUIRE(now.wrench.force.z > last - 0.02);
+        last = now.wrench.force.z;
+    }
+    CHECK(last > 2.0);
+}
