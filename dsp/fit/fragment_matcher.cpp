@@ -2,6 +2,7 @@
 #include "dsp/fit/fragment_matcher.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/faces.hpp"
 #include "dsp/fit/fit_steps.hpp"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace tactus::fit {
@@ -106,8 +108,8 @@ FitEnergy FragmentMatcher::make_energy() const {
     return made;
 }
 
-FragmentMatcher::Solved FragmentMatcher::solve(FitEnergy& e, const Pair& pair,
-                                               std::span<const Pose> starts) const noexcept {
+FragmentMatcher::Solved FragmentMatcher::solve(FitEnergy& e, const Pair& pair, std::span<const Pose> starts,
+                                               const Scales& scales) const noexcept {
     e.rebind(faces_[pair.moving].surface, faces_[pair.fixed].surface);
     const FitSettings& fit = settings.fit;
     const double gyration = e.moving().gyration;
@@ -115,7 +117,8 @@ FragmentMatcher::Solved FragmentMatcher::solve(FitEnergy& e, const Pair& pair,
     std::array<Candidate, 2> best;
     set_law(e, 0.0, coarse_points);
     for (const Pose& start : starts) {
-        Candidate c{anneal(e, start, {fit.widest, 2.0 * fit.finest, 24, fit.power}, steps), 0.0};
+        const double finest = std::min(scales.widest, 2.0 * fit.finest);
+        Candidate c{anneal(e, start, {scales.widest, finest, 24, fit.power}, steps), 0.0};
         c.score = e.quality(c.pose, 2.0 * fit.sigma).score;
         // Equal poses count once.
         if (best[0].score >= 0.0 && pose_distance(c.pose, best[0].pose, gyration) < 1e-3) {
@@ -127,7 +130,7 @@ FragmentMatcher::Solved FragmentMatcher::solve(FitEnergy& e, const Pair& pair,
     set_law(e, 0.0, settings.max_points);
     for (Candidate& c : best) {
         if (!(c.score >= 0.0)) continue;
-        c.pose = anneal(e, c.pose, {4.0 * fit.finest, fit.finest, 14, fit.power}, steps);
+        c.pose = anneal(e, c.pose, {scales.refined, fit.finest, 14, fit.power}, steps);
         c.score = e.quality(c.pose, fit.sigma).score;
         const bool is_apart = solved.best.score >= 0.0 && pose_distance(c.pose, solved.best.pose, gyration) > 1e-3;
         if (c.score > solved.best.score) {
@@ -183,7 +186,7 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
                                            {beside - u, flat_on},
                                            {beside + v, flat_on},
                                            {beside - v, flat_on}}};
-        solved_.push_back(solve(energies_[0], pair, starts));
+        solved_.push_back(solve(energies_[0], pair, starts, wide_scales()));
     }
     // In order of score; a chance fit far from where the fragment is held is not what the hand intends.
     const auto worth = [this](const Solved& s) {
@@ -202,7 +205,7 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         match_ = {};
         match_.moving = moving;
         lead(solved_[n], poses, stands);
-        if (match_.verdict == FitVerdict::uncertain) confirm(solved_[n], poses, stands);
+        if (n == 0 && is_in_doubt()) confirm(solved_[n], poses, stands);
         if (match_.verdict == FitVerdict::fit) return match_;
         if (n == 0) first = match_;
     }
@@ -210,30 +213,61 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
     return match_;
 }
 
-/// What is uncertain may have slipped to another relief, along the face or about its normal: a search from there finds a
+/// No fit, but more than unrelated faces have in common.
+bool FragmentMatcher::is_in_doubt() const noexcept {
+    constexpr double related = 0.3;  // score; that of faces that do not belong together is up to 0.28
+    return match_.verdict == FitVerdict::uncertain ||
+           (match_.quality.score > related &&
+            (match_.verdict == FitVerdict::no_match || match_.verdict == FitVerdict::blocked));
+}
+
+/// On chipped faces a wide scale leads past the right place into a wrong one, even from the right place itself. Searches
+/// at narrow scales from scattered poses around the best place so far, each round narrower and with less scatter, find a
 /// better place, or the rival that the bound must contain.
 void FragmentMatcher::confirm(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
+    // Faces that meet all limits, but are too small for their noise, have hardly slipped.
+    constexpr std::size_t max_scattered = 120, few = 30;
+    const std::size_t scattered =
+        match_.verdict == FitVerdict::uncertain && match_.quality.rms <= settings.fit.max_rms * settings.fit.sigma
+            ? few
+            : max_scattered;
+    struct Round {
+        double turn, slip;  // rad and m, half widths of the scatter
+        double widest;  // in units of the finest scale
+    };
+    constexpr Round rounds[] = {{0.28, 2.0e-3, 4.0}, {0.2, 1.2e-3, 2.0}, {0.16, 1.0e-3, 1.0}, {0.08, 0.5e-3, 1.0}};
     const FitSurface& fixed = faces_[best.pair.fixed].surface;
     const Vec3 about = direction_of(fixed.mean_normal);
     const Vec3 u =
         glm::normalize(glm::cross(about, std::abs(about.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0)));
     const Vec3 v = glm::cross(about, u);
-    const Pose at = best.best.pose;
-    const auto spun = [&](double angle) {
-        const Quat turn = glm::angleAxis(angle, about);
-        return Pose{turn * at.position, turn * at.orientation};
-    };
-    const auto slipped = [&](const Vec3& way) { return Pose{at.position + way, at.orientation}; };
-    const std::array<Pose, 13> starts{{at, spun(0.08), spun(-0.08), spun(0.16), spun(-0.16), slipped(1.5e-3 * u),
-                                       slipped(-1.5e-3 * u), slipped(1.5e-3 * v), slipped(-1.5e-3 * v),
-                                       slipped(3e-3 * u), slipped(-3e-3 * u), slipped(3e-3 * v), slipped(-3e-3 * v)}};
-    Solved again = solve(energies_[0], best.pair, starts);
-    // The search may have ended at the former rival; the former best pose is its rival then.
-    const double gyration = faces_[best.pair.moving].surface.gyration;
-    for (const Candidate& c : {best.best, Candidate{best.rival, best.second}})
-        if (c.score > again.second && pose_distance(c.pose, again.best.pose, gyration) > 1e-3)
-            again.second = c.score, again.rival = c.pose;
-    lead(again, poses, stands);
+    const double gyration = faces_[best.pair.moving].surface.gyration, finest = settings.fit.finest;
+    Solved found = best;
+    std::uint64_t drawn = 0;
+    const auto within = [&drawn](double half) { return half * (2.0 * Random{1}.uniform(drawn++) - 1.0); };
+    for (const Round& round : rounds) {
+        const Pose at = found.best.pose;
+        std::array<Pose, max_scattered + 1> starts;
+        starts.front() = at;
+        for (std::size_t n = 1; n <= scattered; ++n) {
+            const double spin = within(round.turn), tilt_u = within(round.turn), tilt_v = within(round.turn);
+            const Quat turn = rotation_by(spin * about + tilt_u * u + tilt_v * v);
+            const double slip_u = within(round.slip), slip_v = within(round.slip);
+            starts[n] = {turn * at.position + slip_u * u + slip_v * v, glm::normalize(turn * at.orientation)};
+        }
+        Solved again = solve(energies_[0], best.pair, std::span(starts).first(scattered + 1),
+                             {round.widest * finest, 1.6 * finest});
+        // What was found before is a rival now, or still the best.
+        for (const Candidate& c : {found.best, Candidate{found.rival, found.second}}) {
+            if (!(c.score > 0.0) || pose_distance(c.pose, again.best.pose, gyration) < 1e-3) continue;
+            if (c.score > again.best.score) {
+                again.second = again.best.score, again.rival = again.best.pose;
+                again.best = c;
+            } else if (c.score > again.second) again.second = c.score, again.rival = c.pose;
+        }
+        found = again;
+    }
+    lead(found, poses, stands, 1.0);
 }
 
 void FragmentMatcher::begin_search() noexcept {
@@ -270,11 +304,11 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
         starts[static_cast<std::size_t>(n)] = {
             Vec3(0.0), glm::angleAxis(2.0 * std::numbers::pi * n / start_spins, about) * flat_on};
     solved_.clear();
-    solved_.push_back(solve(energies_[0], pair, starts));
+    solved_.push_back(solve(energies_[0], pair, starts, wide_scales()));
     match_ = {};
     match_.moving = moving;
     lead(solved_.front(), poses, stands);
-    if (match_.verdict == FitVerdict::uncertain) confirm(solved_.front(), poses, stands);
+    if (is_in_doubt()) confirm(solved_.front(), poses, stands);
     const auto worth = [](const FragmentMatch& m) { return m.quality.score * std::sqrt(m.quality.overlap); };
     if (worth(match_) > worth(found_)) {
         found_ = match_;

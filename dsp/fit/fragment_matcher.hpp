@@ -136,10 +136,19 @@ private:
     FitEnergy& energy(std::size_t slot, const Pair& pair) noexcept;
     Pose world(const Pair& pair, const Pose& centres, std::span<const Pose> poses) const noexcept;
     Pose centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept;
-    Solved solve(FitEnergy& energy, const Pair& pair, std::span<const Pose> starts) const noexcept;
+    /// m: scale of the robust kernel at the start, and at the start of the refinement.
+    struct Scales {
+        double widest, refined;
+    };
+    Scales wide_scales() const noexcept { return {settings.fit.widest, 4.0 * settings.fit.finest}; }
+    Solved solve(FitEnergy& energy, const Pair& pair, std::span<const Pose> starts,
+                 const Scales& scales) const noexcept;
+    bool is_in_doubt() const noexcept;
     double min_overlap(int moving, int partner) const noexcept;
     void join(const Solved& best, const Pose& at, std::span<const Pose> poses, std::span<const char> stands) noexcept;
-    void lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
+    /// `wider`: scale at which all faces are first fitted together, in units of the finest one.
+    void lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands,
+              double wider = 3.0) noexcept;
     void confirm(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     bool same_search(int moving, std::span<const char> stands) noexcept;
 

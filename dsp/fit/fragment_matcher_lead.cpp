@@ -117,7 +117,8 @@ void FragmentMatcher::join(const Solved& best, const Pose& at, std::span<const P
     match_.faces = static_cast<int>(joined_.size());
 }
 
-void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
+void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands,
+                           double wider) noexcept {
     if (!(best.best.score > 0.0)) return;
     const FitSettings& fit = settings.fit;
     Pose at = world(best.pair, best.best.pose, poses);
@@ -125,8 +126,8 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
     // All faces that fit there take part.
     join(best, at, poses, stands);
     for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.max_points);
-    const auto at_scale = [&](double wider) {
-        for (std::size_t n = 0; n < joined_.size(); ++n) set_robust(energies_[n], fit, wider);
+    const auto at_scale = [&](double scale) {
+        for (std::size_t n = 0; n < joined_.size(); ++n) set_robust(energies_[n], fit, scale);
     };
     Together together(*this, joined_, poses, faces_[best.pair.moving].surface.centre);
     coupling::QuasiStaticCoupling solver;
@@ -140,7 +141,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
         return solver.update(before, together).iterations;
     };
     for (int stage = 0; stage < 18; ++stage) {
-        at_scale(stage < 8 ? 3.0 - 0.25 * stage : 1.0);
+        at_scale(stage < 8 ? wider - 0.125 * (wider - 1.0) * stage : 1.0);
         if (step() == 0 && stage > 8) break;
     }
     const auto centres_of = [&](std::size_t k, const Pose& handle) {
@@ -207,7 +208,7 @@ FacePairFit FragmentMatcher::fit_faces(FitEnergy& energy, std::size_t moving, st
         const Vec3 beside = from.position - glm::dot(from.position, about) * about;
         starts.insert(starts.end(), {from, {Vec3(0.0), from.orientation}, {Vec3(0.0), facing}, {beside, facing}});
     }
-    const Solved solved = solve(energy, {moving, fixed, 0.0}, starts);
+    const Solved solved = solve(energy, {moving, fixed, 0.0}, starts, wide_scales());
     FacePairFit found{moving,        fixed, between_bodies(a, b, solved.best.pose), solved.best.score,
                       solved.second, 0.0,   between_bodies(a, b, solved.rival)};
     found.overlap = energy.quality(solved.best.pose, settings.fit.sigma).overlap;
