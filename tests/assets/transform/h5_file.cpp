@@ -133,7 +133,7 @@ TEST_CASE("transforms in HDF5 of ITK 4, of single precision and in a composite o
     CHECK_THAT(refusal_of_h5(folder / "other.h5"), ContainsSubstring("has no '/TransformGroup'"));
 }
 
-TEST_CASE("a damaged file in HDF5 is refused with one error, whatever the library does with it") {
+TEST_CASE("a damaged file in HDF5 is refused with one error, whatever the library does with it", "[slow]") {
     const TemporaryFolder folder;
     transform::write_motion(folder / "whole.h5", some_motion(1));
     const std::string whole = file::read_whole_file(folder / "whole.h5");

@@ -43,6 +43,7 @@ double most_off(const mesh::Mesh& placed, const mesh::Mesh& scan, const Pose& mo
 
 }  // namespace
 
+// Costly: the only test of the whole way, with two exports and a report.
 TEST_CASE("a case from its fragments to a report and to files that other programs read back", "[slow]") {
     const test::Folder folder;
     const auto file = [&](const std::string& name) { return (folder.path / name).string(); };
