@@ -16,14 +16,16 @@ struct GuideSeat {
     static constexpr auto about =
         "The cutting guide of a task in the hand: put on the bone against the direction in which it is taken off, it "
         "is "
-        "drawn to its seat when it comes near, and stays there. A coupling makes its contact: wire 'grip', 'target', "
-        "'near', 'holding' and 'strength' to it, and its pose back as delay 1. Without a guide it is seated at once.";
+        "drawn to its seat when it comes near, and stays there. A coupling makes its contact: wire 'held', 'grip', "
+        "'target', 'near', 'holding' and 'strength' to it, and its pose back as delay 1. Without a guide it is seated "
+        "at once.";
 
     In<Pose> hand{"pose of the hand in the scene: plan_frame.placed", "m"};
     In<Pose> moved{"of the held guide: coupling.pose as delay 1", "m"};
     In<double> place{"of the body that 'moved' is of: coupling.place as delay 1; below 0: none yet"};
     Out<coupling::Body> body{"the guide, for a scene"};
     Out<Pose> pose{"of the guide, for a scene", "m"};
+    Out<double> held{"place 1 of the scene until the force has faded; -1: none; for coupling.held"};
     Out<Pose> grip{"of the guide in the frame of the hand", "m"};
     Out<Pose> target{"the seat", "m"};
     Out<bool> near{"the guide is drawn to the seat"};
@@ -110,6 +112,7 @@ private:
         near = parts_ && !seated_ && away() < reach && turned() < reach_angle;
         holding = parts_ && !seated_ && has_grip_;
         strength = strength_;
+        held = parts_ && (!seated_ || strength_ > 0.0) ? 1.0 : -1.0;
         seated = seated_;
         distance = parts_ ? away() : 0.0;
         angle = parts_ ? turned() : 0.0;
@@ -122,7 +125,7 @@ private:
     double last_away_ = 0.0, last_turned_ = 0.0;  // m, rad
 };
 
-TACTUS_NODE(GuideSeat, hand, moved, place, body, pose, grip, target, near, holding, strength, seated, distance, angle,
-            task, lift, spacing, reach, reach_angle, tolerance, angle_tolerance, dwell, fade)
+TACTUS_NODE(GuideSeat, hand, moved, place, body, pose, held, grip, target, near, holding, strength, seated, distance,
+            angle, task, lift, spacing, reach, reach_angle, tolerance, angle_tolerance, dwell, fade)
 
 }  // namespace tactus::nodes

@@ -49,6 +49,7 @@ TEST_CASE("a guide that is held at its seat is seated, and the force on the hand
     moved = {seat.position + Vec3(0.0, 0.0, 20.0 * mm), seat.orientation};
     node.run(50);
     CHECK(node.last<bool>("holding"));
+    CHECK(node.last<double>("held") == 1.0);
     CHECK_FALSE(node.last<bool>("near"));
     CHECK(node.last<double>("distance") == Approx(20.0 * mm));
     const Pose held = Pose{Vec3(0.0, 0.0, 0.1), {1.0, 0.0, 0.0, 0.0}} * node.last<Pose>("grip");
@@ -72,6 +73,7 @@ TEST_CASE("a guide that is held at its seat is seated, and the force on the hand
     CHECK(glm::length(node.last<Pose>("pose").position - seat.position) < 1e-12);
     node.run(100);
     CHECK(node.last<double>("strength") == 0.0);
+    CHECK(node.last<double>("held") == -1.0);
     // It stays, wherever the hand goes.
     moved.position += Vec3(0.05);
     node.run(10);

@@ -27,6 +27,7 @@ constexpr double voxels_per_kerf = 3.2;
 constexpr double guide_voxel = 0.3 * mm;
 constexpr double around = 12.0 * mm;  // of bone beside the guide
 constexpr double lift = 20.0 * mm;    // the default of guide_seat
+constexpr double seat_slack = 0.3 * mm;  // beyond the offset: a guide that is pressed on touches the bone there
 constexpr double above = 5.0 * mm;    // from the resting blade to the mouth of the first slot
 
 /// One slot as the blade meets it.
@@ -243,9 +244,10 @@ GuideTask guide_task(const PlannedGuide& guide, const std::string& title, const 
         "bone   = {}\npatch  = \"saw-guide\"\nlength = \"{:.0f} s\"\nsettings = [\n",
         quoted(fmt::format("Guide of {}", title).substr(0, 60)), quoted(bone_file.string()),
         std::ceil(hand.time() + 1.0));
+    text += "    \"blade.sagittal=true\",\n";
     text += size("plan.clearance", clearance) + size("blade.length", blade.length) + size("blade.height", height) +
             size("blade.thickness", thickness) + size("blade.kerf", kerf) + size("carve.kerf", kerf) +
-            size("heat.kerf", kerf);
+            size("heat.kerf", kerf) + size("seat.tolerance", set.offset + seat_slack);
     text += "    # A scripted hand shows it; with a device: --set hand.device=NAME\n    \"hand.device=scripted\",\n";
     text += fmt::format("    {},\n]\n", quoted("scripted.targets=" + hand.targets()));
     text += fmt::format(
