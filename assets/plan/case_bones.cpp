@@ -7,8 +7,8 @@
 #include "assets/plan/kept_points.hpp"
 #include "assets/plan/mesh_unit.hpp"
 #include "assets/plan/plan_file.hpp"
+#include "assets/plan/plan_files.hpp"
 #include "assets/plan/propose_paint.hpp"
-#include "assets/reconstruction/reconstruction.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
 
@@ -116,17 +116,7 @@ CaseBones load_case(const std::filesystem::path& path) {
     }
     for (const PlanFragment& fragment : fragments_of(made.plan))
         made.bones.push_back(fragment_bone(fragment, folder, Paint::or_proposed).bone);
-    for (PlanFragment& fragment : made.plan.fragments) fragment.file = file_of(fragment.file, folder).string();
-    for (PlanStep& step : made.plan.steps) {
-        if (step.painted) step.painted->file = file_of(step.painted->file, folder).string();
-        if (step.mirror) step.mirror->file = file_of(step.mirror->file, folder).string();
-        if (!step.reconstruction) continue;
-        reconstruction::Reconstruction all = *step.reconstruction;
-        all.donor.file = file_of(all.donor.file, folder).string();
-        for (auto* mesh : {&all.jaw, &all.tumour})
-            if (*mesh) (*mesh)->file = file_of((*mesh)->file, folder).string();
-        step.reconstruction = std::make_shared<reconstruction::Reconstruction>(std::move(all));
-    }
+    make_files_absolute(made.plan, folder);
     return made;
 }
 
