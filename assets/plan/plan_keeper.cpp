@@ -3,13 +3,12 @@
 
 #include "assets/file/whole_file.hpp"
 #include "assets/plan/plan_file.hpp"
-#include "assets/reconstruction/reconstruction.hpp"
+#include "assets/plan/plan_files.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -27,25 +26,12 @@ bool is_continued(const std::string& text, const CasePlan& plan) {
         CasePlan begun = plan;
         begun.steps.resize(old.steps.size());
         // Compares steps and fragments only; paths and heads may differ.
-        const auto bare = [](CasePlan& p) {
-            p.title.clear();
-            p.alternatives = {{"main", {}}};
-            p.current = 0;
-            for (PlanFragment& f : p.fragments) f.file.clear();
-            for (PlanStep& step : p.steps) {
-                if (step.mirror) step.mirror->file.clear();
-                if (step.painted) step.painted->file.clear();
-                if (!step.reconstruction) continue;
-                auto all = std::make_shared<reconstruction::Reconstruction>(*step.reconstruction);
-                all->donor.file.clear();
-                if (all->jaw) all->jaw->file.clear();
-                if (all->tumour) all->tumour->file.clear();
-                step.reconstruction = std::move(all);
-            }
-        };
-        bare(old);
-        bare(begun);
-        return plan_text(old) == plan_text(begun);
+        for (CasePlan* one : {&old, &begun}) {
+            one->title.clear();
+            one->alternatives = {{"main", {}}};
+            one->current = 0;
+        }
+        return content_of(std::move(old)) == content_of(std::move(begun));
     } catch (const Error&) {
         return false;
     }
@@ -54,14 +40,14 @@ bool is_continued(const std::string& text, const CasePlan& plan) {
 }  // namespace
 
 PlanKeeper::PlanKeeper(CasePlan plan, fs::path file)
-    : file_(std::move(file)), lock_(file_, std::chrono::milliseconds(500)), steps_(std::move(plan)) {
+    : file_(std::move(file)), lock_(file_, std::chrono::milliseconds(500)), changed_(std::move(plan)) {
     move_old_aside();
     save();
 }
 
 void PlanKeeper::move_old_aside() {
     std::error_code failure;
-    if (!fs::exists(file_, failure) || is_continued(file::read_whole_file(file_), steps_.plan())) return;
+    if (!fs::exists(file_, failure) || is_continued(file::read_whole_file(file_), changed_.plan())) return;
     for (int n = 1;; ++n) {
         const fs::path aside = fmt::format("{}.{}", file_.string(), n);
         if (fs::exists(aside, failure)) continue;
@@ -72,18 +58,28 @@ void PlanKeeper::move_old_aside() {
     }
 }
 
-void PlanKeeper::add(const StepRow& row, double second) {
+void PlanKeeper::add(const PlanRecord& record, double second) {
+    std::string trouble;
+    if (record.number != next_)
+        trouble = fmt::format("{} commands of the run did not reach the plan, before {:.3f} s", record.number - next_,
+                              second);
+    next_ = record.number + 1;
     try {
         is_saved_ = false;
-        steps_.add(row, second);
+        // The run has applied it already, so that it fails only after a loss.
+        const PlanHistory::Outcome outcome = changed_.apply(
+            record.command, std::holds_alternative<SettleFragment>(record.command) ? "settle" : "hand", second);
+        if (outcome != PlanHistory::Outcome::done && trouble.empty())
+            trouble = fmt::format("a command of the run at {:.3f} s is not in the plan: {}", second, text_of(outcome));
     } catch (const Error& error) {
-        if (trouble_.empty()) trouble_ = error.message();
+        trouble = error.message();
     }
+    if (trouble_.empty()) trouble_ = std::move(trouble);
 }
 
 void PlanKeeper::save() {
     if (is_saved_) return;
-    save_case_plan(steps_.plan(), file_);
+    save_case_plan(changed_.plan(), file_);
     is_saved_ = true;
 }
 
@@ -93,7 +89,7 @@ void PlanKeeper::finish() {
     } catch (const Error& error) {
         const fs::path spare = fs::temp_directory_path() / fmt::format("{}.{}", ::getpid(), file_.filename().string());
         try {
-            save_case_plan(steps_.plan(), spare);
+            save_case_plan(changed_.plan(), spare);
         } catch (const Error& another) {
             throw Error(fmt::format("{}; {}", error.message(), another.message()));
         }

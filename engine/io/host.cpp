@@ -187,7 +187,7 @@ RecordStream& EngineHost::record(const StreamFormat& wanted, const SourceLocatio
     for (int again = 2; files_before_.contains(format.file) || files_opened_.contains(format.file); ++again)
         format.file = fmt::format("{}-{}{}", name.stem().string(), again, name.extension().string());
     const bool is_sound = format.type == &value::signal;
-    if (!is_sound && format.type->columns.empty())
+    if (!is_sound && !format.keeper && format.type->columns.empty())
         throw Error(where, fmt::format("a {} cannot be recorded as numbers", format.type->name));
     std::unique_ptr<Sink> sink = make_null_sink();
     if (folder_ && format.keeper) {

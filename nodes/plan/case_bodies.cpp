@@ -5,9 +5,7 @@
 
 namespace tactus::nodes {
 
-namespace {
-
-std::shared_ptr<const BodyParts> body_of(const bone::Bone& bone) {
+std::shared_ptr<const BodyParts> body_of_fragment(const bone::Bone& bone) {
     std::vector<contact::SurfacePoint> points = bone.points;
     Vec3 middle(0.0);
     for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
@@ -18,10 +16,8 @@ std::shared_ptr<const BodyParts> body_of(const bone::Bone& bone) {
                                              Pose{middle, {1.0, 0.0, 0.0, 0.0}}, false);
 }
 
-}  // namespace
-
 CaseBodies::CaseBodies(const std::vector<bone::Bone>& bones) {
-    for (const bone::Bone& bone : bones) parts_.push_back(body_of(bone));
+    for (const bone::Bone& bone : bones) parts_.push_back(body_of_fragment(bone));
 }
 
 void CaseBodies::arrange(const fit::Arrangement& now) noexcept {

@@ -8,15 +8,20 @@
 #include "nodes/contact/body_parts.hpp"
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace tactus::nodes {
 
+/// The body of a fragment, with its origin at the mean of its surface points. Throws Error like BodyParts.
+std::shared_ptr<const BodyParts> body_of_fragment(const bone::Bone& bone);
+
 /// Allocates in the constructor only; no other function allocates, waits or throws.
 class CaseBodies {
 public:
-    /// Each body has its origin at the mean of its surface points.
+    /// Throws Error like body_of_fragment.
     explicit CaseBodies(const std::vector<bone::Bone>& bones);
+    explicit CaseBodies(std::vector<std::shared_ptr<const BodyParts>> parts) : parts_(std::move(parts)) {}
 
     std::size_t count() const noexcept { return parts_.size(); }
     /// Pose of a body in the frame of its scan.

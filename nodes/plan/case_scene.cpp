@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/arrangement/arrangement.hpp"
-#include "dsp/fit/fit.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/notice.hpp"
 #include "graph/node/visual.hpp"
 #include "nodes/plan/case_bodies.hpp"
-#include "nodes/plan/case_history.hpp"
 #include "nodes/plan/step_record.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -77,18 +76,20 @@ struct CaseScene {
             setup.fail("plan '" + plan.name +
                        "' has more than 16 fragments; hiding does not help: plan the case in parts");
         name_ = setup.name;
-        for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_, &no_way_}) notice->attach(setup);
+        for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_, &no_alternative_})
+            notice->attach(setup);
         bodies_ = std::make_unique<CaseBodies>(plan->bones);
-        now_ = std::make_unique<fit::Arrangement>(plan::state_of(plan->plan).arrangement);
-        if (plan->plan.alternatives.size() > CaseHistory::max_ways)
+        if (plan->plan.alternatives.size() > plan::PlanHistory::max_alternatives)
             setup.fail("plan '" + plan.name +
                        "' has more than 32 alternatives; remove some: 'tactus plan alternative'");
-        history_ = std::make_unique<CaseHistory>(plan->plan);
-        wanted_way_ = alternative;
+        history_ = std::make_unique<plan::PlanHistory>(plan->plan);
+        now_ = std::make_unique<fit::Arrangement>(history_->now());
+        given_ = 0;
+        wanted_alternative_ = alternative;
         wanted_drop_ = drop;
         if (!file.value.empty()) {
             keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
-            stream_ = &setup.host->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
+            stream_ = &setup.host->record({file.value, "", &plan_record_type, setup.period, keeper_}, setup.where);
         }
         bodies_->arrange(*now_);
         publish();
@@ -97,7 +98,7 @@ struct CaseScene {
     void process(const Tick& tick) noexcept {
         follow(tick);
         press(tick);
-        choose_way(tick);
+        choose_alternative(tick);
         publish();
     }
 
@@ -138,43 +139,59 @@ private:
     void press(const Tick& tick) noexcept {
         const bool settles = edge(settle, 0) && holding_;
         if (settles && !has_fit()) no_fit_.tell();
-        if (settles && has_fit() && moved.connected && is_valid(moved.get()) &&
-            now_->move(last_, file_pose(last_, {target->position, glm::normalize(target->orientation)}))) {
-            now_->fit(last_, partner_place());
+        if (settles && has_fit() && moved.connected && is_valid(moved.get()) && give(tick, settling())) {
             settled_ = true;
             let_at_ = middle_at(file_pose(last_, {moved->position, glm::normalize(moved->orientation)}));
-            placed(tick, 1.0);
         }
         const int meant = place_of(choose, last_);
         if (edge(join, 1) && meant >= 0) {
             const int other = place_of(with, partner_place());
-            const int both[] = {meant, other};
             keep_held(tick);
-            if (other >= 0 && now_->join(both) != fit::Arrangement::none)
-                arranged(tick, plan::StepKind::group, meant, other);
+            if (other >= 0) give(tick, plan::JoinFragments{meant, other});
         }
         if (edge(split, 2) && meant >= 0) {
             keep_held(tick);
-            if (now_->remove(meant)) arranged(tick, plan::StepKind::remove, meant, -1);
+            give(tick, plan::SplitFragment{meant});
         }
         if (edge(lock, 3) && meant >= 0) {
             keep_held(tick);
-            now_->lock(meant, !now_->is_locked(meant));
-            arranged(tick, now_->is_locked(meant) ? plan::StepKind::lock : plan::StepKind::unlock, meant, -1);
+            give(tick, plan::LockFragment{meant, !now_->is_locked(meant)});
         }
         if (edge(hide, 6) && meant >= 0 && !now_->is_hidden(meant)) {
             keep_held(tick);
-            now_->hide(meant, true);
-            arranged(tick, plan::StepKind::hide, meant, -1);
+            give(tick, plan::HideFragment{meant});
         }
-        if (edge(show, 7)) show_all(tick);
+        if (edge(show, 7) && has_hidden()) {
+            keep_held(tick);
+            give(tick, plan::ShowFragments{});
+        }
         const bool back = edge(undo, 4), on = edge(redo, 5);
         if ((back || on) && holding_) held_back_.tell();
         else if (back != on) {
-            if (!(back ? history_->undo(*now_) : history_->redo(*now_))) return (back ? no_earlier_ : no_later_).tell();
-            bodies_->arrange(*now_);
-            write(tick, history_->row(static_cast<double>(plan::row_goes_to)));
+            const plan::PlanCommand command =
+                back ? plan::PlanCommand(plan::UndoStep{}) : plan::PlanCommand(plan::RedoStep{});
+            if (!give(tick, command)) (back ? no_earlier_ : no_later_).tell();
         }
+    }
+
+    /// Applies a command to the plan, shows the result and records it. Returns false if it changed nothing.
+    bool give(const Tick& tick, const plan::PlanCommand& command) noexcept {
+        const bool is_done = history_->apply(command) == plan::PlanHistory::Outcome::done;
+        // What the hand has moved since the last step is part of the command, or void.
+        *now_ = history_->now();
+        bodies_->arrange(*now_);
+        if (!is_done) return false;
+        const plan::PlanRecord record{given_++, command};
+        if (stream_ && !stream_->write(tick.index, &record, 1, sizeof record)) not_kept_ = true;
+        return true;
+    }
+
+    plan::SettleFragment settling() const noexcept {
+        const auto figure = [](const In<double>& of) { return of.connected ? of.get() : 0.0; };
+        return {last_,
+                partner_place(),
+                file_pose(last_, {target->position, glm::normalize(target->orientation)}),
+                {figure(score), figure(margin), figure(rms), figure(gap), figure(penetration), figure(overlap)}};
     }
 
     /// Whether a parameter was set to something else; it is then as it was set.
@@ -182,32 +199,17 @@ private:
         return param != std::exchange(was, static_cast<double>(param)) && param != -1.0;
     }
 
-    void choose_way(const Tick& tick) noexcept {
-        const bool goes = is_changed(alternative, wanted_way_), drops = is_changed(drop, wanted_drop_);
+    void choose_alternative(const Tick& tick) noexcept {
+        const bool goes = is_changed(alternative, wanted_alternative_), drops = is_changed(drop, wanted_drop_);
         if (!goes && !drops) return;
         if (holding_) return held_back_.tell();
-        const double to = static_cast<double>(alternative), away = static_cast<double>(drop);
-        if ((goes && to != std::floor(to)) || (drops && away != std::floor(away))) return no_way_.tell();
-        if (goes) go_to_way(tick, static_cast<std::size_t>(to));
-        if (drops) drop_way(tick, away);
-    }
-
-    void go_to_way(const Tick& tick, std::size_t to) noexcept {
-        if (!history_->go_to(to, *now_)) return no_way_.tell();
-        bodies_->arrange(*now_);
-        tell_way(tick, plan::row_alternative, static_cast<double>(to));
-    }
-
-    void drop_way(const Tick& tick, double number) noexcept {
-        if (!history_->drop(number)) return no_way_.tell();
-        if (number < 0.0) tell_way(tick, plan::row_undrop, -1.0);
-        else tell_way(tick, plan::row_drop, number);
-    }
-
-    void tell_way(const Tick& tick, int kind, double place) noexcept {
-        plan::StepRow row = history_->row(static_cast<double>(kind));
-        row.after = place;
-        write(tick, row);
+        const double to = alternative, away = drop;
+        if ((goes && to != std::floor(to)) || (drops && away != std::floor(away))) return no_alternative_.tell();
+        if (goes && !give(tick, plan::GoToAlternative{static_cast<int>(to)})) no_alternative_.tell();
+        if (!drops) return;
+        const plan::PlanCommand command = away < 0.0 ? plan::PlanCommand(plan::RestoreAlternative{})
+                                                     : plan::PlanCommand(plan::DropAlternative{static_cast<int>(away)});
+        if (!give(tick, command)) no_alternative_.tell();
     }
 
     /// True when there is a fit for the held body.
@@ -221,7 +223,13 @@ private:
         if (holding_) keep_last(tick);
     }
     void keep_last(const Tick& tick) noexcept {
-        if (!settled_ && last_ >= 0 && now_->can_move(last_)) placed(tick, 0.0);
+        if (!settled_ && last_ >= 0 && now_->can_move(last_)) give(tick, plan::PlaceFragment{last_, now_->pose(last_)});
+    }
+
+    bool has_hidden() const noexcept {
+        for (int n = 0; n < static_cast<int>(bodies_->count()); ++n)
+            if (now_->is_hidden(n)) return true;
+        return false;
     }
 
     int partner_place() const noexcept {
@@ -240,67 +248,6 @@ private:
         return pressed;
     }
 
-    /// Records the present poses of the held body and of all that moves with it.
-    void placed(const Tick& tick, double by) noexcept {
-        plan::StepRow row = history_->row(static_cast<double>(plan::StepKind::place));
-        row.by = by;
-        if (by > 0.0) {
-            row.other = partner_place();
-            row.verdict = static_cast<double>(fit::FitVerdict::fit);
-            const auto told = [](const In<double>& figure) { return figure.connected ? figure.get() : 0.0; };
-            row.score = told(score);
-            row.margin = told(margin);
-            row.rms = told(rms);
-            row.gap = told(gap);
-            row.penetration = told(penetration);
-            row.overlap = told(overlap);
-        }
-        const auto count = static_cast<int>(bodies_->count());
-        for (int n = 0; n < count; ++n) row.left += n != last_ && now_->move_together(last_, n);
-        for (int n = -1; n < count; ++n) {
-            const int one = n < 0 ? last_ : n;
-            if (n == last_ || !now_->move_together(last_, one)) continue;
-            row.fragment = one;
-            row.set(now_->pose(one));
-            write(tick, row);
-            row.left -= 1.0;
-        }
-        history_->add(*now_);
-        bodies_->show_unit(*now_, last_);
-    }
-
-    void arranged(const Tick& tick, plan::StepKind kind, int fragment, int other) noexcept {
-        plan::StepRow row = history_->row(static_cast<double>(kind));
-        row.fragment = fragment;
-        row.other = other;
-        write(tick, row);
-        history_->add(*now_);
-        bodies_->arrange(*now_);
-    }
-
-    void show_all(const Tick& tick) noexcept {
-        plan::StepRow row = history_->row(static_cast<double>(plan::StepKind::show));
-        const auto count = static_cast<int>(bodies_->count());
-        for (int n = 0; n < count; ++n) row.left += now_->is_hidden(n);
-        if (row.left == 0.0) return;
-        keep_held(tick);
-        const plan::StepRow after_held = history_->row(row.kind);
-        row.step = after_held.step, row.after = after_held.after;
-        for (int n = 0; n < count; ++n) {
-            if (!now_->is_hidden(n)) continue;
-            now_->hide(n, false);
-            row.fragment = n;
-            row.left -= 1.0;
-            write(tick, row);
-        }
-        history_->add(*now_);
-        bodies_->arrange(*now_);
-    }
-
-    void write(const Tick& tick, const plan::StepRow& row) noexcept {
-        if (stream_ && !stream_->write(tick.index, &row, 1, sizeof row)) not_kept_ = true;
-    }
-
     Vec3 middle_at(const Pose& pose) const noexcept { return pose.apply(bodies_->home(last_).position); }
 
     void publish() noexcept {
@@ -309,10 +256,11 @@ private:
         settled = settled_;
     }
 
-    double wanted_way_ = -1.0, wanted_drop_ = -1.0;
+    double wanted_alternative_ = -1.0, wanted_drop_ = -1.0;
     std::unique_ptr<CaseBodies> bodies_;
     std::unique_ptr<fit::Arrangement> now_;  // with what the hand has done since the last step
-    std::unique_ptr<CaseHistory> history_;
+    std::unique_ptr<plan::PlanHistory> history_;
+    std::int64_t given_ = 0;  // commands
     std::shared_ptr<StepKeeper> keeper_;
     RecordStream* stream_ = nullptr;
     std::string name_;
@@ -323,7 +271,7 @@ private:
     Notice held_back_{"nothing is undone or redone while a fragment is held: let it go first"};
     Notice no_earlier_{"there is no step to undo"};
     Notice no_later_{"there is no step to redo"};
-    Notice no_way_{
+    Notice no_alternative_{
         "there is no such alternative to go to, to drop or to bring back; they have whole numbers from 0 on"};
     Notice no_fit_{"not settled: the held fragment has no fit where it is"};
 };

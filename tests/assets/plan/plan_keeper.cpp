@@ -23,12 +23,8 @@ plan::CasePlan two() {
     return plan;
 }
 
-plan::StepRow put(int step, double x) {
-    plan::StepRow row;
-    row.step = step;
-    row.after = step - 1;
-    row.x = x;
-    return row;
+plan::PlanRecord put(int number, double x) {
+    return {number, plan::PlaceFragment{0, {Vec3(x, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}}}};
 }
 
 /// No file may grow beyond so many bytes while this lives: what a full disk does.
@@ -54,19 +50,15 @@ TEST_CASE("a kept plan is there from the start, and holds each step once it is s
     plan::PlanKeeper keeper(two(), file);
     CHECK(plan::load_case_plan(file).steps.empty());
     for (int n = 0; n < 5; ++n) {
-        keeper.add(put(n, 0.1 * n), n);
+        keeper.add(put(n, 0.1 * (n + 1)), n);
         keeper.save();
         const plan::CasePlan now = plan::load_case_plan(file);
         REQUIRE(now.steps.size() == static_cast<std::size_t>(n) + 1);
-        CHECK(now.steps.back().poses[0].position.x == 0.1 * n);
+        CHECK(now.steps.back().poses[0].position.x == 0.1 * (n + 1));
         CHECK(*now.steps.back().run_second == n);
     }
     // To the step before: what follows is there to be redone.
-    plan::StepRow back;
-    back.kind = plan::row_goes_to;
-    back.step = 5;
-    back.after = 3;
-    keeper.add(back, 9.0);
+    keeper.add({5, plan::UndoStep{}}, 9.0);
     keeper.finish();
     CHECK(plan::load_case_plan(file).place().head == 3);
     CHECK(plan::load_case_plan(file).place().tip == 4);
@@ -180,27 +172,34 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
                       Catch::Matchers::ContainsSubstring("cannot be changed"));
 }
 
-namespace {
+TEST_CASE("commands that were lost or cannot be applied are reported and the others are kept") {
+    const TemporaryFolder folder;
+    plan::PlanKeeper keeper(two(), folder / "case.plan.json");
+    keeper.add({0, plan::LockFragment{0, true}}, 0.1);
+    CHECK(keeper.trouble().empty());
+    keeper.add({3, plan::LockFragment{1, true}}, 0.2);
+    CHECK(keeper.trouble() == "2 commands of the run did not reach the plan, before 0.200 s");
+    keeper.add({4, plan::LockFragment{7, true}}, 0.3);
+    keeper.finish();
+    CHECK(plan::load_case_plan(folder / "case.plan.json").steps.size() == 2);
 
-void tell_of_alternative(plan::PlanKeeper& keeper, int kind, double place) {
-    plan::StepRow row;
-    row.kind = kind;
-    row.after = place;
-    keeper.add(row, 0.0);
+    plan::PlanKeeper other(two(), folder / "other.plan.json");
+    other.add({0, plan::UndoStep{}}, 1.5);
+    CHECK(other.trouble() == "a command of the run at 1.500 s is not in the plan: there is no step to undo");
+    other.finish();
 }
-
-}  // namespace
 
 TEST_CASE("a dropped alternative comes back beside one that was begun since, and the plan can be read") {
     const TemporaryFolder folder;
     const auto file = folder / "case.plan.json";
     plan::PlanKeeper keeper(two(), file);
-    const auto tell = [&](int kind, double place) { tell_of_alternative(keeper, kind, place); };
-    tell(plan::row_alternative, 1.0);
-    tell(plan::row_alternative, 0.0);
-    tell(plan::row_drop, 1.0);
-    tell(plan::row_alternative, 1.0);
-    tell(plan::row_undrop, -1.0);
+    std::int64_t number = 0;
+    const auto give = [&](const plan::PlanCommand& command) { keeper.add({number++, command}, 0.0); };
+    give(plan::GoToAlternative{1});
+    give(plan::GoToAlternative{0});
+    give(plan::DropAlternative{1});
+    give(plan::GoToAlternative{1});
+    give(plan::RestoreAlternative{});
     keeper.finish();
     CHECK(keeper.trouble().empty());
     const plan::CasePlan plan = plan::load_case_plan(file);
@@ -213,11 +212,12 @@ TEST_CASE("alternatives that were dropped come back one after another and the la
     const TemporaryFolder folder;
     const auto file = folder / "case.plan.json";
     plan::PlanKeeper keeper(two(), file);
-    const auto tell = [&](int kind, double place) { tell_of_alternative(keeper, kind, place); };
-    for (const double place : {1.0, 2.0, 0.0}) tell(plan::row_alternative, place);
-    tell(plan::row_drop, 1.0);
-    tell(plan::row_drop, 1.0);
-    for (int n = 0; n < 3; ++n) tell(plan::row_undrop, -1.0);
+    std::int64_t number = 0;
+    const auto give = [&](const plan::PlanCommand& command) { keeper.add({number++, command}, 0.0); };
+    for (const int place : {1, 2, 0}) give(plan::GoToAlternative{place});
+    give(plan::DropAlternative{1});
+    give(plan::DropAlternative{1});
+    for (int n = 0; n < 2; ++n) give(plan::RestoreAlternative{});
     keeper.finish();
     CHECK(keeper.trouble().empty());
     const plan::CasePlan plan = plan::load_case_plan(file);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The case node of a planning session: settling, undoing, joining, hiding.
-#include "assets/plan/step_row.hpp"
+#include "assets/plan/plan_history.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "graph/node/notice.hpp"
 #include "tests/nodes/plan/broken_case.hpp"
@@ -60,12 +60,15 @@ struct Session {
         const coupling::SceneObject& o = now.objects[static_cast<std::size_t>(n)];
         return o.pose * o.body.home.inverse();
     }
-    /// What the rows come to that left the node.
+    /// What the commands come to that left the node; each must be possible where it was recorded.
     plan::CasePlan plan() const {
-        plan::RunSteps steps(broken()->plan);
+        plan::ChangedPlan changed(broken()->plan);
         const auto& stream = *node.host.records[0];
-        for (const plan::StepRow& row : stream.values<plan::StepRow>()) steps.add(row, 0.0);
-        return steps.plan();
+        for (const plan::PlanRecord& record : stream.values<plan::PlanRecord>()) {
+            const bool settles = std::holds_alternative<plan::SettleFragment>(record.command);
+            CHECK(changed.apply(record.command, settles ? "settle" : "hand", 0.0) == plan::PlanHistory::Outcome::done);
+        }
+        return changed.plan();
     }
 };
 
@@ -203,36 +206,33 @@ TEST_CASE("a scene that nothing moves keeps its version, and one that the hand m
     CHECK(scenes[299].content_hash == coupling::hash_of(scenes[299]));
 }
 
-TEST_CASE("a row of a run that is no step of its plan is refused, and the steps around it are kept") {
-    plan::RunSteps steps(broken()->plan);
-    const auto lock = [](double step, double after, double fragment) {
-        plan::StepRow row;
-        row.step = step;
-        row.after = after;
-        row.kind = static_cast<double>(plan::StepKind::lock);
-        row.fragment = fragment;
-        return row;
-    };
-    steps.add(lock(2.0, 1.0, 1.0), 0.0);
-    CHECK_THROWS_WITH(steps.add(lock(3.0, 2.0, 7.0), 0.1),
-                      Catch::Matchers::ContainsSubstring("7 is not a valid fragment"));
-    CHECK_THROWS_AS(steps.add(lock(4.0, 9.0, 2.0), 0.2), Error);
-    CHECK_THROWS_AS(steps.add(lock(4.0, 3.0, 2.0), 0.2), Error);
-    CHECK_THROWS_AS(steps.add(lock(1e300, 3.0, 2.0), 0.2), Error);
-    // It follows the one that was left out, so it follows the one before that; number 6 never came.
-    steps.add(lock(7.0, 3.0, 2.0), 0.3);
-    // The first of two rows, and then no second one.
-    plan::StepRow half;
-    half.step = 8.0;
-    half.after = 7.0;
-    half.left = 1.0;
-    steps.add(half, 0.4);
-    steps.add(lock(9.0, 7.0, 0.0), 0.5);
-    const plan::CasePlan& plan = steps.plan();
-    REQUIRE(plan.steps.size() == 5);
-    CHECK(plan.steps[3].before == 2);
-    CHECK(plan.steps[3].fragments == std::vector<int>{2});
-    CHECK(plan.steps[4].before == 3);
+TEST_CASE("a fragment that is grasped and released where it was makes no step") {
+    Session session;
+    session.at = broken()->plan.steps[1].poses[0];
+    REQUIRE(off(session.at, plan::state_of(broken()->plan).arrangement.pose(2)) == 0.0);
+    Session still;
+    still.at = plan::state_of(broken()->plan).arrangement.pose(1);
+    still.release = 200;
+    still.run(300);
+    CHECK(still.plan().steps.size() == 2);
+    CHECK(still.node.last<double>("steps") == 2.0);
+}
+
+TEST_CASE("the scene of a run and the plan of its commands have the same poses to the bit also in a group") {
+    Session session;
+    session.join = 100;
+    session.release = 300;
+    session.node.set("choose", "2").set("with", "1");
+    session.run(250);
+    session.node.feed<Pose>("moved", Pose{Vec3(7.0, -3.0, 2.0) * mm, rotation_by({0.3, -0.2, 0.1})} * home_of(1));
+    session.node.run(200);
+    const plan::PlanState state = plan::state_of(session.plan());
+    REQUIRE(state.arrangement.move_together(1, 2));
+    CHECK(session.plan().steps.back().fragments == std::vector<int>{1, 2});
+    const coupling::Scene scene = session.scene();
+    for (std::size_t n = 0; n < 3; ++n)
+        CHECK(same_bits(scene.objects[n].pose,
+                        state.arrangement.pose(static_cast<int>(n)) * home_of(static_cast<int>(n))));
 }
 
 TEST_CASE("undo while a fragment is held does nothing and says why, and so does undo without a step") {
