@@ -79,10 +79,11 @@ public:
         // An earlier run in this window may have left results in the folder.
         next.is_further = has_opened_;
         auto bench = std::make_unique<Workbench>(next);
+        auto document = plan.empty() ? nullptr : std::make_unique<PlanDocument>(plan);
         close();
         has_opened_ = true;
         choice_ = std::move(next);
-        plan_ = plan;
+        plan_ = std::move(document);
         bench_ = std::move(bench);
         bench_->find_kept_edits();
         memory_.opened(plan.empty() ? bench_->editor().file() : plan);
@@ -95,7 +96,7 @@ public:
         auto bench = Workbench::untitled(next);
         close();
         has_opened_ = true;
-        plan_.clear();
+        plan_.reset();
         bench_ = std::move(bench);
         bench_->find_kept_edits();
         set_up();
@@ -115,10 +116,11 @@ public:
         if (bench_ && !take_) {
             // The patch as it is called and as it was changed by now.
             behind_.reset();
-            if (!bench_->is_untitled()) behind_ = Behind{bench_->choice(), plan_};
+            const PlanDocument* const plan = desk_->plan_document();
+            if (!bench_->is_untitled()) behind_ = Behind{bench_->choice(), plan ? plan->file() : fs::path()};
         }
         close();
-        plan_.clear();
+        plan_.reset();
         take_ = std::move(take);
         bench_ = std::move(bench);
         bench_->has_patch_behind = behind_.has_value();
@@ -171,6 +173,7 @@ private:
             // What was edited before is kept.
         }
         bench_->keep_edits();
+        if (desk_) desk_->keep_plan();
     }
 
     void close() {
@@ -182,7 +185,10 @@ private:
 
     void set_up() {
         desk_ = std::make_unique<Desk>(window_, *bench_, take_.get(), memory_);
-        desk_->plan_file = plan_;
+        if (plan_) {
+            plan_->find_kept();
+            desk_->open_plan(std::move(plan_));
+        }
         desk_->show_title();
         std::optional<Layout> layout;
         // Given for what is opened first; others have their own.
@@ -202,7 +208,7 @@ private:
         if (wishes.start_page) return desk_->open_start_page();
         asked_ = std::move(wishes);
         using Leaving = Questions::Leaving;
-        const bool asks = !take_ && bench_->has_unsaved_edits();
+        const bool asks = !take_ && desk_->questions.has_unsaved();
         desk_->questions.leaving = asks ? Leaving::asks : Leaving::leaves;
     }
 
@@ -215,7 +221,7 @@ private:
             if (std::exchange(is_wanted_by_script_, false)) throw;
             if (!desk_) open_start_page();
             // Who did not want to save goes on with what is there: the next way out asks again.
-            bench_->want_edits();
+            desk_->questions.want_all();
             bench_->tell(error.what(), true);
         }
     }
@@ -259,7 +265,7 @@ private:
                 wanted_ = std::exchange(asked_, {});
             }
         } else if (questions.leaving == Leaving::leaves) window_.close();
-        else if (window_.wants_to_close() && !take_ && bench_->has_unsaved_edits()) {
+        else if (window_.wants_to_close() && !take_ && questions.has_unsaved()) {
             window_.keep_open();
             questions.leaving = Leaving::asks;
         }
@@ -288,7 +294,7 @@ private:
     Window window_;
     RunChoice choice_;
     std::string layout_;
-    fs::path plan_;  ///< that the patch was opened for
+    std::unique_ptr<PlanDocument> plan_;  ///< that the patch was opened for, until the desk has it
     std::optional<Behind> behind_;
     std::optional<Script> script_;
     std::unique_ptr<TakeBench> take_;

@@ -113,13 +113,13 @@ void keep(const Person& person, const std::string& name) {
     display::write_png(image, (fs::path(folder) / (name + ".png")).string());
 }
 
-void interrupt(const fs::path& folder) {
+void interrupt(const fs::path& folder, int signal) {
     std::error_code none;
     for (const auto& process : fs::directory_iterator("/proc", none)) {
         std::ifstream name(process.path() / "comm");
         std::string comm;
         if (!(name >> comm) || comm != "tactus" || fs::read_symlink(process.path() / "cwd", none) != folder) continue;
-        ::kill(std::stoi(process.path().filename()), SIGINT);
+        ::kill(std::stoi(process.path().filename()), signal);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "tests/tools/window/person.hpp"
 
+#include <csignal>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -48,8 +49,8 @@ void settle(const Person& person);
 /// TACTUS_KEEP_PICTURES names a folder for pictures that somebody looks at.
 void keep(const Person& person, const std::string& name);
 
-/// Ends the command that works in the folder, as Ctrl-C does.
-void interrupt(const std::filesystem::path& folder);
+/// Sends a signal to the command that works in the folder; SIGINT ends it as Ctrl-C does.
+void interrupt(const std::filesystem::path& folder, int signal = SIGINT);
 
 /// Waits until something is to be seen, for half a minute at most.
 template <class Condition>

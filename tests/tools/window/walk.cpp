@@ -64,6 +64,11 @@ Outcome Walk::stop() {
     return done_.get();
 }
 
+void Walk::kill() {
+    interrupt(folder.path, SIGKILL);
+    done_.get();
+}
+
 bool Walk::shows(const std::string& control) const { return eyes.spots().contains(control); }
 
 bool Walk::waits_for(const std::string& control, const std::string& panel) {

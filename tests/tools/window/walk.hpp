@@ -45,6 +45,8 @@ public:
     Outcome end(double max_s = 20.0);
     /// Ends the command as Ctrl-C does.
     Outcome stop();
+    /// Ends it at once, as a crash does: kill -9.
+    void kill();
 
     bool shows(const std::string& control) const;
     /// Waits for it, for two minutes at most. With a panel: turns the wheel over it until the control is there.

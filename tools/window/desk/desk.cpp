@@ -43,6 +43,12 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memo
     };
     scopes_.ask_value = [this](ValueQuestion question) { value_.ask(std::move(question)); };
     slices_.ask_scan = [this] { ask_scan(); };
+    questions.save_plan = [this] { return save_plan(); };
+    bench_.asset_for_run = [this]() -> std::optional<std::pair<std::string, std::filesystem::path>> {
+        const CaseRun& run = plan_.case_run();
+        if (!plan_document_ || run.asset().empty()) return std::nullopt;
+        return std::pair(run.asset(), plan_document_->file_for_run(bench_.status()->folder));
+    };
     if (!take_) scene_.hand().offer = [this] { draw_hand_offer(bench_); };
 }
 
@@ -73,8 +79,11 @@ void Desk::follow_run() {
 }
 
 void Desk::rest() {
-    if (take_) bench_.tend();
-    else follow_run();
+    if (take_) return bench_.tend();
+    follow_run();
+    tend_plan();
+    // Steps of a run that nobody sees are kept, too.
+    plan_.case_run().tend(bench_.observer());
 }
 
 void Desk::show_messages(double height) {
@@ -127,7 +136,7 @@ void Desk::ask_farewell() {
         farewell = Farewell::none;
         ImGui::CloseCurrentPopup();
     }
-    if (farewell == Farewell::none) bench_.want_edits();
+    if (farewell == Farewell::none) questions.want_all();
     ImGui::EndPopup();
 }
 
@@ -139,6 +148,7 @@ void Desk::draw() {
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale(), window_.small};
     begin_whole_window("desk", fonts_);
     shortcuts();
+    tend_plan();
     // Also behind the start page: a step or a pause keeps the run from beginning again.
     plan_.tend(take_ ? nullptr : bench_.observer());
     if (start_page_.is_open) return draw_start();

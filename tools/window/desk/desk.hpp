@@ -4,6 +4,8 @@
 
 #include "tools/window/desk/questions.hpp"
 #include "tools/window/desk/take_bench.hpp"
+#include "tools/window/document/plan_document.hpp"
+#include "tools/window/document/plan_preview.hpp"
 #include "tools/window/document/workbench.hpp"
 #include "tools/window/files/file_dialog.hpp"
 #include "tools/window/files/import_dialog.hpp"
@@ -40,6 +42,9 @@ struct DeskWishes {
 class Desk {
 public:
     Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memory);
+    ~Desk() { bench_.asset_for_run = nullptr; }
+    Desk(const Desk&) = delete;
+    Desk& operator=(const Desk&) = delete;
 
     /// Draws one frame, between Window::begin and Window::end.
     void draw();
@@ -59,10 +64,15 @@ public:
     Layout layout = Layout::patch;
     /// Changes the layout, and remembers it for this patch.
     void use_layout(Layout wanted);
-    /// The plan that this patch was opened for; empty: none.
-    std::filesystem::path plan_file;
+    /// The plan that this patch was opened for, as the document; null: there is none.
+    PlanDocument* plan_document() { return plan_document_.get(); }
+    void open_plan(std::unique_ptr<PlanDocument> plan);
     /// What a person has opened: what the window remembers and is named after.
-    std::filesystem::path opened_file() const { return plan_file.empty() ? bench_.editor().file() : plan_file; }
+    std::filesystem::path opened_file() const {
+        return plan_document_ ? plan_document_->file() : bench_.editor().file();
+    }
+    /// Called on every way out: what is unsaved is kept for a later window.
+    void keep_plan() noexcept;
     void show_title();
     DeskWishes wishes;
     /// Lays the start page over what is open, which stays as it is until something is chosen.
@@ -80,6 +90,9 @@ public:
 
 private:
     void follow_run();
+    void tend_plan();
+    /// Where no run shows the opened plan, the scene shows it without one.
+    bool shows_preview() const;
     /// `height`: of a vertical splitter; a horizontal one fills the width. Returns how far it is moved, pixels.
     double splitter(const std::string& id, bool upright, double height);
     /// Whether a panel has something to show.
@@ -109,6 +122,8 @@ private:
     void ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done);
     void ask_open();
     void save();
+    bool save_plan();
+    void ask_save_plan_as();
     void ask_save_as();
     void ask_scan();
     void ask_import();
@@ -131,6 +146,10 @@ private:
 
     Window& window_;
     Workbench& bench_;
+    std::unique_ptr<PlanDocument> plan_document_;
+    PlanPreview preview_;
+    std::string told_problem_;  ///< of the preview
+    bool wants_plan_name_ = false, shows_unsaved_ = false;
     TakeBench* take_;
     std::unique_ptr<LiveFeed> live_;
     int runs_ = 0;

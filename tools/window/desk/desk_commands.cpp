@@ -15,12 +15,16 @@ void Desk::add_file_commands(std::vector<Command>& all) {
     all.push_back({"File", "New patch", "Ctrl+N", "empty canvas begin", [this] { wishes.new_patch = true; }});
     all.push_back({"File", "Open...", "Ctrl+O", "patch take plan file", [this] { ask_open(); }});
     all.push_back({"File", "Start page", "", "examples recent home", [this] { wishes.start_page = true; }});
-    all.push_back(
-        {"File", "Save", "Ctrl+S", "write file", [this] { save(); },
-         [this] { return !take_ && (!bench_.editor().is_saved() || bench_.is_untitled() || nodes_.has_begun_edit()); },
-         nullptr, true});
+    all.push_back({"File", "Save", "Ctrl+S", "write file", [this] { save(); },
+                   [this] {
+                       return !take_ && (!bench_.editor().is_saved() || bench_.is_untitled() ||
+                                         nodes_.has_begun_edit() || (plan_document_ && !plan_document_->is_saved()));
+                   },
+                   nullptr, true});
     all.push_back(
         {"File", "Save as...", "Ctrl+Shift+S", "write copy another name", [this] { ask_save_as(); }, is_patch});
+    all.push_back({"File", "Save the plan as...", "", "write case copy another name", [this] { ask_save_plan_as(); },
+                   [this] { return !take_ && plan_.case_run().plan() != nullptr; }});
     all.push_back(
         {"File", "Make a bone of a scan or a mesh...", "", "import ct dicom stl", [this] { ask_import(); }, is_patch});
     all.push_back({"File", "Keep the layout in the patch", "", "window panels",

@@ -42,7 +42,88 @@ void Desk::end_typing() {
 
 void Desk::save() {
     end_typing();
-    bench_.save();
+    const bool is_plan_saved = !plan_document_ || plan_document_->is_saved();
+    if (!is_plan_saved) save_plan();
+    // The patch in which a plan is shown is rarely changed.
+    if (!plan_document_ || !bench_.editor().is_saved()) bench_.save();
+}
+
+bool Desk::save_plan() {
+    try {
+        if (plan_document_->needs_name()) {
+            wants_plan_name_ = true;
+            return false;
+        }
+        const std::vector<std::string> added = plan_document_->save();
+        std::string text = fmt::format("saved {}", plan_document_->file().string());
+        for (const std::string& name : added) text += fmt::format("; another program had changed it: '{}'", name);
+        bench_.tell(std::move(text));
+        return true;
+    } catch (const std::exception& error) {
+        bench_.tell(fmt::format("not saved: {}", error.what()), true);
+        return false;
+    }
+}
+
+void Desk::ask_save_plan_as() {
+    const plan::CasePlan* const plan = plan_.case_run().plan();
+    if (!plan) return bench_.tell("there is no plan to save", true);
+    std::error_code ignored;
+    const bool is_own = plan_document_ && !plan_document_->needs_name();
+    FileChooser chooser(FileChooser::For::save, is_own ? plan_document_->folder() : fs::current_path(ignored),
+                        {".plan.json"});
+    chooser.name = plan_document_ ? plan_document_->file().filename().string() : std::string("case.plan.json");
+    const auto save = [this](const fs::path& path, bool replaces) {
+        try {
+            const plan::CasePlan* const now = plan_.case_run().plan();
+            if (!now) throw Error("there is no plan to save any more");
+            if (plan_document_) plan_document_->save_as(path, replaces);
+            else {
+                auto made = std::make_unique<PlanDocument>(std::make_shared<const plan::CasePlan>(*now), path);
+                made->save_as(path, replaces);
+                open_plan(std::move(made));
+            }
+        } catch (const std::exception& error) {
+            return dialog_.refuse(error.what());
+        }
+        bench_.tell(fmt::format("saved {}", plan_document_->file().string()));
+        questions.named(true);
+        memory_.opened(opened_file());
+        memory_.keep_layout(opened_file(), layout);
+        show_title();
+    };
+    dialog_.open(
+        "Save the plan as", std::move(chooser), [save](const fs::path& path) { save(path, false); },
+        [save](const fs::path& path) { save(path, true); });
+}
+
+void Desk::open_plan(std::unique_ptr<PlanDocument> plan) {
+    plan_document_ = std::move(plan);
+    plan_.case_run().use(plan_document_.get());
+    questions.use(plan_document_.get());
+}
+
+void Desk::tend_plan() {
+    if (!plan_document_) return;
+    if (std::string problem = plan_document_->tend(); !problem.empty()) bench_.tell(std::move(problem), true);
+    if (std::exchange(shows_unsaved_, !plan_document_->is_saved()) == plan_document_->is_saved()) show_title();
+    const CaseRun& run = plan_.case_run();
+    if (!run.is_there()) return;
+    const RunStatus::State state = bench_.status()->state;
+    if (state == RunStatus::State::over || state == RunStatus::State::loading)
+        preview_.tend(plan_document_->newest(), run.scene_port());
+    if (std::exchange(told_problem_, preview_.problem()) != preview_.problem() && !preview_.problem().empty())
+        bench_.tell(preview_.problem(), true);
+}
+
+bool Desk::shows_preview() const {
+    if (!plan_document_ || !preview_.observer()) return false;
+    const RunStatus::State state = bench_.status()->state;
+    return state == RunStatus::State::over || state == RunStatus::State::loading;
+}
+
+void Desk::keep_plan() noexcept {
+    if (plan_document_) plan_document_->keep();
 }
 
 void Desk::ask_save_as() {
@@ -57,7 +138,6 @@ void Desk::ask_save_as() {
     const auto save = [this](const fs::path& path, Existing existing) {
         if (!bench_.save_as(path.string(), existing)) return dialog_.refuse(bench_.messages().back().text);
         questions.named(true);
-        plan_file.clear();
         memory_.opened(opened_file());
         memory_.keep_layout(opened_file(), layout);
         show_title();
@@ -68,9 +148,9 @@ void Desk::ask_save_as() {
 }
 
 void Desk::show_title() {
-    window_.set_title(plan_file.empty()
-                          ? fmt::format("{} - Tactus", bench_.title())
-                          : fmt::format("{} - {} - Tactus", plan_file.filename().string(), bench_.title()));
+    window_.set_title(plan_document_ ? fmt::format("{}{} - {} - Tactus", plan_document_->is_saved() ? "" : "* ",
+                                                   plan_document_->file().filename().string(), bench_.title())
+                                     : fmt::format("{} - Tactus", bench_.title()));
 }
 
 void Desk::ask_part() {
@@ -114,6 +194,10 @@ void Desk::draw_dialogs() {
     if (bench_.wants_name && !dialog_.is_open()) {
         bench_.wants_name = false;
         ask_save_as();
+    }
+    if (wants_plan_name_ && !dialog_.is_open()) {
+        wants_plan_name_ = false;
+        ask_save_plan_as();
     }
     dialog_.draw(fonts_);
     import_.draw(fonts_);

@@ -159,7 +159,13 @@ void Desk::draw_scene(double height) {
     const double s = fonts_.scale;
     const PanelFrame frame("scene", height, {6.0 * s, 6.0 * s}, {6.0 * s, 4.0 * s}, false);
     scene_.has_few_tools = layout == Layout::train;
-    scene_.draw(take_ ? take_->scene() : bench_.observer(), fonts_);
+    if (shows_preview() && preview_.loaded() < preview_.count() && preview_.problem().empty()) {
+        const std::string done = fmt::format("bone {} of {}", preview_.loaded() + 1, preview_.count());
+        ImGui::ProgressBar(static_cast<float>(preview_.loaded()) / static_cast<float>(preview_.count()),
+                           vec({-1.0, 0.0}), done.c_str());
+        mark_spot("bones are loaded");
+    }
+    scene_.draw(take_ ? take_->scene() : shows_preview() ? preview_.observer() : bench_.observer(), fonts_);
 }
 
 void Desk::draw_tree(double height) {

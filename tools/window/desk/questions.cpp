@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/desk/questions.hpp"
 
+#include "dsp/core/error.hpp"
 #include "tools/window/widgets/spots.hpp"
 
 #include <imgui.h>
@@ -28,23 +29,60 @@ bool answer(const char* label, const char* spot, bool has_escape = false) {
 
 }  // namespace
 
+void Questions::want_all() {
+    bench_.want_edits();
+    if (plan_) plan_->want();
+}
+
 void Questions::draw() {
-    if (leaving == Leaving::asks) return ask_leaving();
-    if (leaving == Leaving::none && bench_.offer()) offer_edits();
+    // One dialog after the other: the plan first, for which the window was opened.
+    if (leaving == Leaving::asks) return plan_ && plan_->has_unsaved_steps() ? ask_leaving_plan() : ask_leaving();
+    if (leaving != Leaving::none) return;
+    if (plan_ && plan_->offer()) offer_steps();
+    else if (bench_.offer()) offer_edits();
+}
+
+void Questions::ask_leaving_plan() {
+    if (!begin_question("Unsaved steps")) return;
+    ImGui::Text("%s has unsaved steps.", plan_->file().filename().c_str());
+    if (answer("Save", "save steps"))
+        leaving = save_plan && save_plan() ? after_saving() : plan_->needs_name() ? Leaving::saves : Leaving::none;
+    if (answer("Don't save", "drop steps")) {
+        plan_->drop();
+        leaving = after_saving();
+    }
+    if (answer("Cancel (Esc)", "cancel closing", true)) leaving = Leaving::none;
+    ImGui::EndPopup();
+}
+
+void Questions::offer_steps() {
+    if (!begin_question("Unsaved steps of an earlier window")) return;
+    ImGui::Text("An earlier window on this plan ended with unsaved steps:\n%s", plan_->offer()->c_str());
+    try {
+        if (answer("Restore", "restore steps")) {
+            plan_->restore();
+            has_restored = true;
+            bench_.tell("the unsaved steps are restored; save the plan to keep them");
+        } else if (answer("Discard", "discard steps")) plan_->discard_offer();
+        else if (answer("Later (Esc)", "later steps", true)) plan_->postpone_offer();
+    } catch (const Error& error) {
+        bench_.tell(error.what(), true);
+    }
+    ImGui::EndPopup();
 }
 
 void Questions::named(bool is_saved) {
-    if (leaving == Leaving::saves) leaving = is_saved ? Leaving::leaves : Leaving::none;
+    if (leaving == Leaving::saves) leaving = is_saved ? after_saving() : Leaving::none;
 }
 
 void Questions::ask_leaving() {
     if (!begin_question("Unsaved edits")) return;
     ImGui::Text("%s has unsaved edits.", bench_.editor().file().filename().c_str());
     if (answer("Save", "save edits"))
-        leaving = bench_.save() ? Leaving::leaves : bench_.wants_name ? Leaving::saves : Leaving::none;
+        leaving = bench_.save() ? after_saving() : bench_.wants_name ? Leaving::saves : Leaving::none;
     if (answer("Don't save", "drop edits")) {
         bench_.drop_edits();
-        leaving = Leaving::leaves;
+        leaving = after_saving();
     }
     if (answer("Cancel (Esc)", "cancel closing", true)) leaving = Leaving::none;
     ImGui::EndPopup();

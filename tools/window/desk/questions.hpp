@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dialogs about unsaved edits: when a patch is left, and when it is opened.
+// Dialogs about unsaved work: when a patch or a plan is left, and when it is opened.
 #pragma once
 
+#include "tools/window/document/plan_document.hpp"
 #include "tools/window/document/workbench.hpp"
+
+#include <functional>
 
 namespace tactus::window {
 
@@ -10,9 +13,18 @@ class Questions {
 public:
     explicit Questions(Workbench& bench) : bench_(bench) {}
 
+    /// The opened plan, or null.
+    void use(PlanDocument* plan) { plan_ = plan; }
+    /// Saves the plan; false: it was not saved, or needs a name first.
+    std::function<bool()> save_plan;
+
+    /// Something is unsaved that was not dropped.
+    bool has_unsaved() const { return bench_.has_unsaved_edits() || (plan_ && plan_->has_unsaved_steps()); }
+    /// Who stays after all keeps what was dropped.
+    void want_all();
     /// Draws the dialogs on top of everything.
     void draw();
-    /// The dialog for a file name is closed: who leaves when the patch is saved, leaves or stays.
+    /// The dialog for a file name is closed: who leaves when the document is saved, leaves or stays.
     void named(bool is_saved);
 
     /// Dialog before a patch is left: save, do not save, or stay? `saves`: waits for a file name.
@@ -21,9 +33,13 @@ public:
 
 private:
     void ask_leaving();
+    void ask_leaving_plan();
     void offer_edits();
+    void offer_steps();
+    Leaving after_saving() const { return has_unsaved() ? Leaving::asks : Leaving::leaves; }
 
     Workbench& bench_;
+    PlanDocument* plan_ = nullptr;
 };
 
 }  // namespace tactus::window

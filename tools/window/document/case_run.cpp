@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/document/case_run.hpp"
 
-#include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/arrangement/history.hpp"
 #include "tools/window/document/hand_of_patch.hpp"
@@ -18,8 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto between_looks = std::chrono::milliseconds(300);
-constexpr auto written_within = std::chrono::milliseconds(1000), longest_missing = std::chrono::milliseconds(10'000);
+// From a step in the run to its version of the plan.
+constexpr auto published_within = std::chrono::milliseconds(500), longest_missing = std::chrono::milliseconds(10'000);
 
 const char* const figures[] = {"verdict", "fits", "fragment", "partner", "score", "rms", "gap", "penetration"};
 
@@ -65,11 +64,6 @@ std::vector<StepLine> step_lines(const plan::CasePlan& plan) {
         lines.push_back(
             {n, words_of(plan, plan.steps[static_cast<std::size_t>(n)]), fit::is_on_way(before, n, place.head)});
     return lines;
-}
-
-fs::path free_plan(const fs::path& folder) {
-    for (int n = 1;; ++n)
-        if (fs::path free = folder / fmt::format("changed-{}.plan.json", n); !fs::exists(free)) return free;
 }
 
 CaseRun::~CaseRun() {
@@ -148,23 +142,19 @@ void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
     if (is_other_patch) follow_patch();
     if (is_other_patch || is_other_run) watch(observer);
     if (is_other_run) {
-        if (plan_ && steps_.size() > steps_at_start_ && !bench_.goes_on())
+        if (!document_ && plan_ && steps_.size() > steps_at_start_ && !bench_.goes_on())
             bench_.tell(fmt::format("this run begins with the plan of the patch; that of the run before is in {}",
                                     file_.string()));
         commands_.clear();
         plan_.reset();
+        of_run_.reset();
         steps_.clear();
-        written_ = unread_ = {};
         steps_done_ = -1.0;
     }
     if (!is_there()) return;
     commands_.tend();
     look_for_changes();
-    const auto now = Clock::now();
-    if (now - looked_ > between_looks) {
-        looked_ = now;
-        read_plan();
-    }
+    follow_plan();
     if (study_.valid() && study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
         has_numbers_ = studied_ == Study::gaps || studied_ == Study::healthy;
         try {
@@ -175,7 +165,7 @@ void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
             bench_.tell(found_, true);
         }
     }
-    if (has_numbers_ && study_of_ != written_) {
+    if (has_numbers_ && study_of_ != version_) {
         has_numbers_ = false;
         found_.clear();
     }
@@ -186,7 +176,7 @@ void CaseRun::look_for_changes() {
     const double steps = number(node_ + ".steps", -1.0);
     const bool is_step = std::exchange(steps_done_, steps) != steps;
     if (is_step) stepped_ = Clock::now();
-    // A slow disk. What a run could not write never comes.
+    // A slow machine. A command that was lost on its way never comes.
     const auto done = static_cast<double>(std::ranges::count(steps_, true, &StepLine::is_done));
     const bool is_missing = plan_ && steps >= 0.0 && steps != done && Clock::now() - stepped_ < longest_missing;
     if (is_step || is_missing || commands_.is_under_way() || commands_.is_paused() || is_holding())
@@ -209,30 +199,63 @@ bool CaseRun::may_begin_again() {
     return true;
 }
 
-void CaseRun::read_plan() {
-    const fs::path folder = bench_.status()->folder;
-    if (folder.empty() || file_name_.empty()) return;
-    file_ = folder / file_name_;
-    std::error_code none;
-    const fs::file_time_type written = fs::last_write_time(file_, none);
-    if (none || written == unread_ || (plan_ && written == written_)) return;
-    try {
-        const bool is_first = !plan_;
-        plan_ = plan::load_case_plan(file_);
-        steps_ = step_lines(*plan_);
-        if (is_first) steps_at_start_ = steps_.size();
-        written_ = written;
-    } catch (const Error& error) {
-        bench_.tell(error.what(), true);
-        unread_ = written;
+void CaseRun::follow_plan() {
+    const std::shared_ptr<const RunStatus> status = bench_.status();
+    file_ = !status->folder.empty() && !file_name_.empty() ? status->folder / file_name_
+            : document_                                    ? document_->file()
+                                                           : fs::path();
+    if (status->plan && status->plan != of_run_) {
+        const bool is_first = !of_run_;
+        of_run_ = status->plan;
+        if (is_first) steps_at_start_ = step_lines(*of_run_).size();
+        if (document_) document_->adopt(of_run_);
     }
+    const bool shows_run = of_run_ && (is_live() || !document_);
+    const auto& newest = shows_run || !document_ ? of_run_ : document_->newest();
+    if (newest == plan_) return;
+    plan_ = newest;
+    ++version_;
+    steps_ = plan_ ? step_lines(*plan_) : std::vector<StepLine>();
+}
+
+fs::path CaseRun::folder_of_results() const {
+    if (document_ && !document_->needs_name()) return document_->folder();
+    const fs::path& folder = bench_.status()->folder;
+    std::error_code none;
+    return folder.empty() ? fs::current_path(none) : folder;
 }
 
 bool CaseRun::can_press(const std::string& input) const {
+    if (changes_document()) return input != "settle";
     return buttons_.contains(input) && bench_.status()->state != RunStatus::State::over;
 }
 
+void CaseRun::give(const plan::PlanCommand& command) {
+    using Outcome = plan::PlanHistory::Outcome;
+    try {
+        // Kept from command to command: it can bring dropped alternatives back.
+        if (!changed_ || changed_of_ != document_->newest()) changed_.emplace(document_->plan());
+        const Outcome outcome = changed_->apply(command, "command");
+        if (outcome != Outcome::done) return bench_.tell(std::string(plan::text_of(outcome)), true);
+        document_->adopt(std::make_shared<const plan::CasePlan>(changed_->plan()));
+        changed_of_ = document_->newest();
+    } catch (const Error& error) {
+        bench_.tell(error.what(), true);
+    }
+}
+
 void CaseRun::press(const std::string& input, int fragment, int other) {
+    if (changes_document()) {
+        if (input == "undo") return give(plan::UndoStep{});
+        if (input == "redo") return give(plan::RedoStep{});
+        if (input == "show") return give(plan::ShowFragments{});
+        if (fragment < 0) return bench_.tell("choose a fragment first, by the list of the scene", true);
+        if (input == "join") return give(plan::JoinFragments{fragment, other});
+        if (input == "split") return give(plan::SplitFragment{fragment});
+        if (input == "hide") return give(plan::HideFragment{fragment});
+        const bool is_locked = plan::state_of(document_->plan()).arrangement.is_locked(fragment);
+        return give(plan::LockFragment{fragment, !is_locked});
+    }
     const auto button = buttons_.find(input);
     if (button == buttons_.end()) return;
     if (input == "undo" || input == "redo" || input == "show") return commands_.add({{button->second, {}, {}}});
@@ -251,16 +274,20 @@ bool CaseRun::is_live() const { return is_there() && bench_.status()->state != R
 
 bool CaseRun::is_settled() const {
     if (bench_.status()->state == RunStatus::State::over) return true;
-    return !commands_.is_under_way() && Clock::now() - unsettled_ > written_within;
+    return !commands_.is_under_way() && Clock::now() - unsettled_ > published_within;
 }
 
 // Only a change counts.
 void CaseRun::go_to_alternative(int place) {
+    if (changes_document()) return give(plan::GoToAlternative{place});
     commands_.add({{node_, "alternative", "-1"}});
     commands_.add({{node_, "alternative", std::to_string(place)}});
 }
 
 void CaseRun::drop_alternative(int place) {
+    if (changes_document())
+        return give(place < 0 ? plan::PlanCommand(plan::RestoreAlternative{})
+                              : plan::PlanCommand(plan::DropAlternative{place}));
     commands_.add({{node_, "drop", "-1"}});
     commands_.add({{node_, "drop", std::to_string(place)}});
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan that a running patch changes: its steps, the buttons that are wired to its case_scene node, the fit of the held
-// fragment, and studies of it. No user interface.
+// The plan that a running patch changes, or the opened plan while none runs: its steps, the buttons that are wired to its
+// case_scene node, the fit of the held fragment, and studies of it. No user interface.
 #pragma once
 
-#include "assets/plan/case_plan.hpp"
+#include "assets/plan/plan_history.hpp"
 #include "engine/observe/observer.hpp"
 #include "tools/window/document/live_commands.hpp"
+#include "tools/window/document/plan_document.hpp"
 #include "tools/window/document/workbench.hpp"
 
 #include <chrono>
@@ -27,9 +28,6 @@ struct StepLine {
 /// The steps on the way to the tip of the current alternative, the first step first.
 std::vector<StepLine> step_lines(const plan::CasePlan& plan);
 
-/// A file that is not there, for a plan that was changed beside its run: "changed-1.plan.json" and so on.
-std::filesystem::path free_plan(const std::filesystem::path& folder);
-
 class CaseRun {
 public:
     explicit CaseRun(Workbench& bench) : bench_(bench), commands_(bench) {}
@@ -37,31 +35,43 @@ public:
     CaseRun(const CaseRun&) = delete;
     CaseRun& operator=(const CaseRun&) = delete;
 
-    /// Once per picture: follows the patch and the plan's file, and sends commands.
+    /// The plan that was opened, to which every version of a run's plan goes; null: none. It must outlive its use.
+    void use(PlanDocument* document) { document_ = document; }
+    PlanDocument* document() const { return document_; }
+
+    /// Once per picture: follows the patch and the versions of the plan, and sends commands.
     void tend(const std::shared_ptr<observe::Observer>& observer);
     /// The patch has a plan.
     bool is_there() const { return !node_.empty(); }
 
-    /// As the run last wrote it; null until then.
-    const plan::CasePlan* plan() const { return plan_ ? &*plan_ : nullptr; }
+    /// That of the run as it is now, or the opened one while none runs; null: neither. With absolute paths.
+    const plan::CasePlan* plan() const { return plan_.get(); }
+    /// Increases with every version of `plan`; 0: none.
+    std::int64_t version() const { return version_; }
+    /// The output of the patch that has the fragments, "case.scene".
+    std::string scene_port() const { return node_ + ".scene"; }
     /// The name of the plan in the patch's [assets].
     const std::string& asset() const { return asset_; }
+    /// The file to which the run writes the plan; without a run that of the opened plan.
     const std::filesystem::path& file() const { return file_; }
-    /// When it was written.
-    std::filesystem::file_time_type written() const { return written_; }
+    /// Where results of studies go: beside the opened plan, or the run's folder.
+    std::filesystem::path folder_of_results() const;
     const std::vector<StepLine>& steps() const { return steps_; }
 
     /// Presses the button node that is wired to an input of the plan: "undo", "redo", "join", "split", "lock", "hide",
-    /// "show". `fragment`, `other`: places that it means; −1: the fragment held last, and its partner.
+    /// "show". `fragment`, `other`: places that it means; −1: the fragment held last, and its partner. While no run
+    /// changes the opened plan, it is changed at once.
     void press(const std::string& input, int fragment = -1, int other = -1);
-    /// A button node is wired to that input, and the patch runs.
+    /// A button node is wired to that input, and the patch runs; or an opened plan is changed without one.
     bool can_press(const std::string& input) const;
     /// Puts fragments into one group, one after another.
     void join(const std::vector<int>& fragments);
     /// The patch runs.
     bool is_live() const;
-    /// All that was done to the plan has come into its file: a run that begins with that file loses nothing. False while
-    /// a fragment is held or the run is paused.
+    /// No run changes the opened plan: commands do so at once.
+    bool changes_document() const { return document_ != nullptr && !is_live(); }
+    /// All that was done to the plan is in `plan`: a run that begins with it loses nothing. False while a fragment is held
+    /// or the run is paused.
     bool is_settled() const;
     /// What was asked of the plan is not yet in the run.
     bool is_asked() const { return commands_.is_under_way(); }
@@ -70,8 +80,6 @@ public:
     /// For a change with which the run is to begin again. False: not now; the reason is in the messages. In a pause they
     /// say that it waits.
     bool may_begin_again();
-    /// Reads the plan's file if it has changed.
-    void read_plan();
     /// Goes to an alternative of the plan, by its place; their number: begins another one at the current state.
     void go_to_alternative(int place);
     /// Drops an alternative that is not the current one; -2: brings the last one back.
@@ -87,7 +95,7 @@ public:
     };
     std::optional<Fit> fit() const;
 
-    /// A study of the plan's file, on a thread of its own; one at a time.
+    /// A study of the plan, on a thread of its own; one at a time.
     enum class Study { gaps, healthy, report, files };
     void begin(Study study);
     bool is_busy() const { return study_.valid(); }
@@ -99,6 +107,8 @@ private:
     void follow_patch();
     void watch(const std::shared_ptr<observe::Observer>& observer);
     void look_for_changes();
+    void follow_plan();
+    void give(const plan::PlanCommand& command);
     double number(const std::string& port, double otherwise) const;
     bool flag(const std::string& port) const;
 
@@ -116,14 +126,17 @@ private:
     Clock::time_point stepped_{};
     std::size_t steps_at_start_ = 0;
     bool is_hand_of_person_ = true;
-    Clock::time_point unsettled_{}, looked_{};
+    Clock::time_point unsettled_{};
     std::filesystem::path file_;
-    std::filesystem::file_time_type written_{}, unread_{};  // unread: of a file that could not be read
-    std::optional<plan::CasePlan> plan_;
+    PlanDocument* document_ = nullptr;
+    std::shared_ptr<const plan::CasePlan> plan_, of_run_;
+    std::optional<plan::ChangedPlan> changed_;  // the document ...
+    std::shared_ptr<const plan::CasePlan> changed_of_;  // ... if it is still this version
+    std::int64_t version_ = 0;
     std::vector<StepLine> steps_;
     std::future<std::string> study_;
     Study studied_ = Study::gaps;
-    std::filesystem::file_time_type study_of_{};
+    std::int64_t study_of_ = 0;  // version of the plan
     std::string found_;
     bool has_numbers_ = false;  // `found_` is true of `study_of_` only
 };

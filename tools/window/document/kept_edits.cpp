@@ -67,13 +67,13 @@ void KeptEdits::finish() {
     }
 }
 
-std::string KeptEdits::tend(const edit::PatchEditor& editor, bool has_unsaved_edits) {
+std::string KeptEdits::tend(const EditedText& edited, bool has_unsaved_edits) {
     if (written_.valid()) {
         if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
         finish();
         if (!problem_.empty() && problem_ != told_) return told_ = problem_;
     }
-    if (editor.is_saved()) {
+    if (edited.is_saved) {
         if (!was_restored_) remove();
         else {
             // Who undoes what was restored may want it later: new edits get a file of their own.
@@ -84,24 +84,24 @@ std::string KeptEdits::tend(const edit::PatchEditor& editor, bool has_unsaved_ed
         }
         return {};
     }
-    if (!has_unsaved_edits || editor.version() == kept_version_) return {};
+    if (!has_unsaved_edits || edited.version == kept_version_) return {};
     const auto now = std::chrono::steady_clock::now();
     if (new_version_ <= kept_version_) {
-        new_version_ = editor.version();
+        new_version_ = edited.version;
         new_since_ = now;
     }
     if (now - new_since_ < after) return {};
-    kept_version_ = new_version_ = editor.version();
-    written_ = std::async(std::launch::async, write, file_, editor.file(), editor.text());
+    kept_version_ = new_version_ = edited.version;
+    written_ = std::async(std::launch::async, write, file_, edited.file, edited.text());
     return {};
 }
 
-fs::path KeptEdits::keep(const edit::PatchEditor& editor) {
+fs::path KeptEdits::keep(const EditedText& edited) {
     finish();
-    if (file_.empty() || kept_version_ != editor.version() || !problem_.empty())
-        file_ = write(file_, editor.file(), editor.text());
+    if (file_.empty() || kept_version_ != edited.version || !problem_.empty())
+        file_ = write(file_, edited.file, edited.text());
     problem_.clear();
-    kept_version_ = new_version_ = editor.version();
+    kept_version_ = new_version_ = edited.version;
     let_go();
     return file_;
 }

@@ -2,10 +2,10 @@
 // The file in which a window keeps its unsaved edits: written while it works, so that a window that dies loses little.
 #pragma once
 
-#include "graph/edit/patch_editor.hpp"
-
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <string>
 
@@ -14,24 +14,33 @@ namespace tactus::window {
 /// Some window holds this file: its edits are not on offer.
 bool is_in_use(const std::filesystem::path& kept);
 
+/// A document as it is edited: a patch or a plan.
+struct EditedText {
+    std::filesystem::path file;
+    std::int64_t version = 0;  ///< differs for every text
+    bool is_saved = true;
+    std::function<std::string()> text;
+};
+
 class KeptEdits {
 public:
-    KeptEdits() = default;
+    /// `wait`: how old edits are when they are written.
+    explicit KeptEdits(std::chrono::milliseconds wait = std::chrono::milliseconds(2000)) : after(wait) {}
     ~KeptEdits();
     KeptEdits(const KeptEdits&) = delete;
     KeptEdits& operator=(const KeptEdits&) = delete;
 
     /// Called once per frame. Edits that are `after` old are written by another thread, as a disk may be slow. A text
     /// that is the saved one again needs no file. Returns why edits could not be written, once; empty otherwise.
-    std::string tend(const edit::PatchEditor& editor, bool has_unsaved_edits);
+    std::string tend(const EditedText& edited, bool has_unsaved_edits);
     /// Writes them at once, and lets other windows have the file. Throws Error.
-    std::filesystem::path keep(const edit::PatchEditor& editor);
-    /// Continues with a file whose edits were restored. It stays until the patch is saved.
+    std::filesystem::path keep(const EditedText& edited);
+    /// Continues with a file whose edits were restored. It stays until the document is saved.
     void continue_with(const std::filesystem::path& file);
     /// The edits are saved, or not wanted.
     void remove();
 
-    std::chrono::milliseconds after{2000};
+    std::chrono::milliseconds after;
 
 private:
     void finish();

@@ -45,10 +45,12 @@ std::optional<fs::path> state_folder() {
 /// Path stems without number and extension: beside the patch, and in the common folder.
 struct Stems {
     std::optional<fs::path> beside, state;
+    std::string extension;  // of a patch or of a plan
 };
 Stems stems_of(const fs::path& patch) {
     const fs::path path = true_path(patch);
     Stems stems;
+    stems.extension = path.extension().string();
     if (!run::is_of_library(path)) stems.beside = path.parent_path() / (path.stem().string() + ".unsaved");
     Hash hash;
     hash.add_text(path.string());
@@ -57,14 +59,14 @@ Stems stems_of(const fs::path& patch) {
     return stems;
 }
 
-fs::path numbered(const fs::path& stem, int number) {
-    return number == 1 ? stem.string() + ".toml" : fmt::format("{}-{}.toml", stem.string(), number);
+fs::path numbered(const fs::path& stem, int number, const std::string& extension) {
+    return number == 1 ? stem.string() + extension : fmt::format("{}-{}{}", stem.string(), number, extension);
 }
 
 /// Creates a new, empty file exclusively. Throws Error.
-fs::path reserve(const fs::path& stem) {
+fs::path reserve(const fs::path& stem, const std::string& extension) {
     for (int number = 1; number <= max_kept; ++number) {
-        const fs::path path = numbered(stem, number);
+        const fs::path path = numbered(stem, number, extension);
         const int handle = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (handle >= 0) {
             ::close(handle);
@@ -72,11 +74,11 @@ fs::path reserve(const fs::path& stem) {
         }
         if (errno != EEXIST) throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
     }
-    throw Error(fmt::format("{}.toml: there are {} such files already", stem.string(), max_kept));
+    throw Error(fmt::format("{}{}: there are {} such files already", stem.string(), extension, max_kept));
 }
 
-fs::path keep_at(const fs::path& stem, std::string_view text) {
-    const fs::path path = reserve(stem);
+fs::path keep_at(const fs::path& stem, const std::string& extension, std::string_view text) {
+    const fs::path path = reserve(stem, extension);
     try {
         file::write_durable_file(path, text);
     } catch (const Error&) {
@@ -93,7 +95,7 @@ fs::path keep_unsaved(const fs::path& patch, std::string_view text) {
     const Stems stems = stems_of(patch);
     std::string why = "neither XDG_STATE_HOME nor HOME is set";
     if (stems.beside) try {
-            return keep_at(*stems.beside, text);
+            return keep_at(*stems.beside, stems.extension, text);
         } catch (const Error& error) {
             why = error.message();
         }
@@ -103,7 +105,7 @@ fs::path keep_unsaved(const fs::path& patch, std::string_view text) {
     if (failure)
         throw Error(
             fmt::format("{}: cannot make the folder: {}", stems.state->parent_path().string(), failure.message()));
-    return keep_at(*stems.state, text);
+    return keep_at(*stems.state, stems.extension, text);
 }
 
 std::vector<fs::path> find_unsaved(const fs::path& patch) {
@@ -116,7 +118,7 @@ std::vector<fs::path> find_unsaved(const fs::path& patch) {
     for (const auto& stem : {stems.beside, stems.state}) {
         if (!stem) continue;
         for (int number = 1; number <= max_kept; ++number) {
-            const fs::path path = numbered(*stem, number);
+            const fs::path path = numbered(*stem, number, stems.extension);
             std::error_code failure;
             // An empty file was reserved and never written.
             if (!fs::is_regular_file(path, failure) || fs::file_size(path, failure) == 0 || failure) continue;

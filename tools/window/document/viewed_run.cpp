@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/document/viewed_run.hpp"
 
+#include "nodes/plan/step_record.hpp"
 #include "tools/run/live_table.hpp"
 #include "tools/run/run_session.hpp"
 #include "tools/terminal.hpp"
@@ -32,6 +33,13 @@ NodeStatus status_of(const build::LiveNode& node) {
     const double period_us = seconds(node.group->plan->period) * 1e6 * node.group->max_frames;
     const double mean = node.time.mean_ns() * 1e-3;
     return {node.name, mean, static_cast<double>(node.time.max_ns.load()) * 1e-3, mean / period_us};
+}
+
+std::shared_ptr<const plan::CasePlan> plan_of(const run::Engine& engine) {
+    for (const auto& stream : engine.host().streams)
+        if (const auto* keeper = dynamic_cast<const nodes::StepKeeper*>(stream->format().keeper.get()))
+            if (auto plan = keeper->versions().newest()) return plan;
+    return nullptr;
 }
 
 }  // namespace
@@ -67,6 +75,7 @@ void ViewedRun::work() {
 void ViewedRun::end(const std::string& failure) {
     const std::lock_guard lock(lock_);
     auto last = std::make_shared<RunStatus>(*status_);
+    if (session_) last->plan = plan_of(session_->engine());
     last->state = RunStatus::State::over;
     last->failure = failure;
     status_ = std::move(last);
@@ -88,8 +97,8 @@ void ViewedRun::tend(RunSession& session) {
         }
         ++done_;
     }
-    constexpr int looks = 5;  // every 100 ms
-    if (tends_++ % looks == 0) look_at(session);
+    constexpr int looks = 5;  // every 100 ms, a new version of the plan at once
+    if (tends_++ % looks == 0 || plan_of(session.engine()) != status()->plan) look_at(session);
 }
 
 void ViewedRun::look_at(RunSession& session) {
@@ -103,6 +112,7 @@ void ViewedRun::look_at(RunSession& session) {
     status.requests = done_;
     status.changed_s = changed_s_;
     status.is_recording = engine.is_recording();
+    status.plan = plan_of(engine);
     for (const auto& notices = engine.host().notices; told_notices_ < notices.size(); ++told_notices_)
         say(notices[told_notices_]);
     for (const auto& group : engine.groups()) {

@@ -20,6 +20,9 @@
 namespace tactus::run {
 class RunSession;
 }
+namespace tactus::plan {
+struct CasePlan;
+}
 
 namespace tactus::window {
 
@@ -59,6 +62,7 @@ struct RunStatus {
     double changed_s = 0.0;  ///< logical, s: when the last change of a parameter, or press of a button, takes effect
     bool is_recording = false;
     std::filesystem::path folder;  ///< of its results; empty while it loads
+    std::shared_ptr<const plan::CasePlan> plan;  ///< newest version of the plan that it changes; null: there is none
     std::string failure;  ///< why it ended early; empty: it did not
 };
 

@@ -256,6 +256,12 @@ void Workbench::turn(const std::string& node, const std::string& param, const st
 void Workbench::run() {
     if (run_ && !run_->is_over()) return;
     if (!plan_ && !is_broken_) return tell("nothing runs yet: add nodes and give them their wires", true);
+    try {
+        if (const auto asset = asset_for_run && !next_goes_on_ ? asset_for_run() : std::nullopt)
+            use_asset(asset->first, asset->second);
+    } catch (const Error& error) {
+        return tell(fmt::format("the run cannot begin: {}", error.what()), true);
+    }
     run_.reset();
     assets_.forget_changed();
     goes_on_ = std::exchange(next_goes_on_, false);
@@ -315,7 +321,7 @@ std::shared_ptr<const RunStatus> Workbench::status() const {
 
 void Workbench::tend() {
     change_hand();
-    if (std::string problem = kept_.tend(*editor_, has_unsaved_edits()); !problem.empty())
+    if (std::string problem = kept_.tend(edited(), has_unsaved_edits()); !problem.empty())
         tell(fmt::format("unsaved edits cannot be kept for a later window: {}", problem), true);
     if (!run_) return look_at_file();
     for (std::string& text : run_->messages()) {

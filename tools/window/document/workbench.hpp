@@ -212,6 +212,8 @@ public:
     void want_hand(bool wanted) { wanted_hand_ = wanted; }
     /// Whether all that was done in the run is in its files; told why not.
     std::function<bool()> is_settled;
+    /// An asset and its file with which a new run begins: an opened plan as it is by then. Throws Error.
+    std::function<std::optional<std::pair<std::string, std::filesystem::path>>()> asset_for_run;
     void stop();
     void pause(bool wanted);
     /// Presses a button of the run that is a node of the patch.
@@ -262,6 +264,7 @@ private:
     void go_back();
     void take_over_file();
     void keep_beside(const std::string& text);
+    EditedText edited() const;
     void look_at_file();
     bool has_same_parts();
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hand of the patch: that of the window in place of the patch's own.
-#include "tools/window/document/case_run.hpp"
+#include "assets/plan/plan_file.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/window/document/hand_of_patch.hpp"
+#include "tools/window/document/plan_document.hpp"
 #include "tools/window/document/workbench.hpp"
 
 #include <fmt/format.h>
@@ -65,19 +67,19 @@ void Workbench::change_hand() {
 
 void Workbench::begin_with_hand(bool of_window) {
     const std::vector<std::string> assets = choice_.overrides.assets;
-    // The run goes on with the plan that it has written.
+    // The run goes on with the plan that it has changed.
     const auto scene = std::ranges::find(written_.nodes, "case_scene", &patch::PatchNode::type);
-    const fs::path folder = status()->folder;
-    std::error_code none;
-    if (scene != written_.nodes.end() && !folder.empty()) {
+    const std::shared_ptr<const RunStatus> now = status();
+    if (scene != written_.nodes.end() && now->plan) {
         const auto plan = std::ranges::find(scene->settings, "plan", &OptionText::name);
-        const auto file = std::ranges::find(scene->settings, "file", &OptionText::name);
-        const fs::path written = folder / (file == scene->settings.end() ? "case.plan.json" : file->text);
-        const fs::path copy = free_plan(folder);
-        if (plan != scene->settings.end() && fs::copy_file(written, copy, none)) {
-            use_asset(plan->text, fs::absolute(copy));
-            next_goes_on_ = true;
-        }
+        if (plan != scene->settings.end()) try {
+                const fs::path copy = fs::absolute(free_plan(now->folder));
+                plan::save_case_plan(*now->plan, copy);
+                use_asset(plan->text, copy);
+                next_goes_on_ = true;
+            } catch (const Error& error) {
+                return tell(error.what(), true);
+            }
     }
     if (use_hand_of_window(of_window)) return run();
     choice_.overrides.assets = assets;

@@ -162,10 +162,14 @@ void Workbench::drop_edits() {
     kept_.remove();
 }
 
+EditedText Workbench::edited() const {
+    return {editor_->file(), editor_->version(), editor_->is_saved(), [this] { return editor_->text(); }};
+}
+
 void Workbench::keep_edits() noexcept {
     if (!has_unsaved_edits()) return;
     try {
-        const fs::path kept = kept_.keep(*editor_);
+        const fs::path kept = kept_.keep(edited());
         dropped_version_ = editor_->version();
         fmt::print(stderr, "tactus: unsaved edits of {} are kept in {}; the next window offers to restore them\n",
                    editor_->file().string(), kept.string());

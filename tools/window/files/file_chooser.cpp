@@ -132,7 +132,10 @@ std::optional<fs::path> FileChooser::accept() {
         problem = fmt::format("there is no file '{}'", file.string());
         return std::nullopt;
     }
-    if (!endings_.empty() && lower(file.extension().string()) != endings_.front()) file += endings_.front();
+    // The stem is not empty, and an ending may have two parts: ".plan.json".
+    const std::string typed = lower(file.filename().string());
+    if (!endings_.empty() && (typed.size() <= endings_.front().size() || !typed.ends_with(endings_.front())))
+        file += endings_.front();
     const fs::file_type there = fs::status(file, ignored).type();
     if (there == fs::file_type::regular) replaced = file;
     else if (fs::exists(fs::symlink_status(file, ignored)))

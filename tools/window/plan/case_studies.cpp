@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Studies of the plan of a run, as its file has it: gaps, distance from the healthy side, page, files for other programs.
+// Studies of the plan: gaps, distance from the healthy side, page, files for other programs.
 #include "assets/file/whole_file.hpp"
-#include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/analysis/plan/plan_export.hpp"
@@ -46,9 +45,8 @@ fs::path free_folder(const fs::path& folder) {
         if (fs::path free = folder / fmt::format("export-{}", i); !fs::exists(free)) return free;
 }
 
-std::string made(CaseRun::Study what, const fs::path& file) {
-    const plan::CasePlan plan = plan::load_case_plan(file);
-    const fs::path folder = file.parent_path();
+/// `folder`: for files that are written; the paths in the plan are absolute.
+std::string made(CaseRun::Study what, const plan::CasePlan& plan, const fs::path& folder) {
     switch (what) {
         case CaseRun::Study::gaps: return gaps_of(plan, folder);
         case CaseRun::Study::healthy: return healthy_of(plan, folder);
@@ -77,12 +75,13 @@ std::string made(CaseRun::Study what, const fs::path& file) {
 
 void CaseRun::begin(Study what) {
     if (is_busy()) return;
-    if (!plan_) return bench_.tell("the run has not written its plan yet", true);
+    if (!plan_) return bench_.tell("there is no plan yet", true);
     found_ = "...";
     has_numbers_ = false;
     studied_ = what;
-    study_of_ = written_;
-    study_ = std::async(std::launch::async, [what, file = file_] { return made(what, file); });
+    study_of_ = version_;
+    study_ = std::async(std::launch::async,
+                        [what, plan = plan_, folder = folder_of_results()] { return made(what, *plan, folder); });
 }
 
 }  // namespace tactus::window

@@ -250,7 +250,7 @@ void FlapPanel::tend() {
     }
     // What was taken does not come back when another change is refused.
     if (!flap_.is_changing()) applied_.reset();
-    if (run_.plan()) scene_.use_plan(run_.file(), *run_.plan(), run_.written());
+    if (run_.plan()) scene_.use_plan(run_.file(), *run_.plan(), run_.version());
 }
 
 void FlapPanel::draw() {

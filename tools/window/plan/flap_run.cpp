@@ -60,11 +60,11 @@ void FlapRun::tend(bool measures) {
     }
     if (!run_.plan()) {
         now_.reset();
-        of_ = measured_ = {};
+        of_ = measured_ = 0;
         return;
     }
-    if (of_ != run_.written()) {
-        of_ = run_.written();
+    if (of_ != run_.version()) {
+        of_ = run_.version();
         now_ = plan::state_of(*run_.plan()).reconstruction;
         verdicts_ = {};
         follow_plan();
@@ -101,7 +101,6 @@ void FlapRun::tend_change() {
     }
     if (!waits_ || changing_.valid() || !run_.plan() || !run_.is_settled()) return;
     waits_ = false;
-    run_.read_plan();
     make();
 }
 
@@ -115,7 +114,7 @@ bool FlapRun::begin(WholeChange change) {
 }
 
 void FlapRun::make() {
-    made_of_ = run_.written();
+    made_of_ = run_.version();
     changing_ =
         std::async(std::launch::async, [plan = *run_.plan(), folder = run_.file().parent_path(), change = change_] {
             const fs::path file = free_plan(folder);
@@ -159,10 +158,9 @@ bool FlapRun::lay_plate(const PlateChoice& choice) {
 
 fs::path FlapRun::take_changed() {
     if (changed_.empty() || !run_.is_settled()) return {};
-    run_.read_plan();
     fs::path made = std::exchange(changed_, {});
     const bool has_ended = was_live_ && !run_.is_live();
-    if (!has_ended && run_.plan() && run_.written() == made_of_) return made;
+    if (!has_ended && run_.plan() && run_.version() == made_of_) return made;
     std::error_code none;
     fs::remove(made, none);
     if (!has_ended) waits_ = true;

@@ -67,12 +67,12 @@ private:
     Workbench& bench_;
     CaseRun& run_;
     std::shared_ptr<const reconstruction::Reconstruction> now_;
-    std::filesystem::file_time_type of_{}, measured_{};
+    std::int64_t of_ = 0, measured_ = 0;  ///< versions of the plan
     analysis::Beside<Verdicts> measuring_;
     std::future<std::filesystem::path> changing_;  ///< writes a file: its end is waited for
     std::filesystem::path changed_;
     WholeChange change_;  ///< being made; null: the run is only to begin with its plan as it is
-    std::filesystem::file_time_type made_of_{};
+    std::int64_t made_of_ = 0;
     std::filesystem::path began_in_;  ///< plan of the run whose nodes have read ...
     std::string began_with_;  ///< ... this reconstruction
     bool is_other_ = false;  ///< the plan has another one by now

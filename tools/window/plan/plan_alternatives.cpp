@@ -50,11 +50,11 @@ void PlanAlternatives::tend() {
         shown_.clear();
         return;
     }
-    if (shown_ == compared_ && of_ == run_.written()) return;
+    if (shown_ == compared_ && of_ == run_.version()) return;
     if (counting_.is_busy()) return;  // of the plan as it was; then again
     if (!scene_.is_fitted()) return;  // the middles of the fragments are known when their bodies are made
     shown_ = compared_;
-    of_ = run_.written();
+    of_ = run_.version();
     scene_.compare(poses_of_alternative(*plan, other), compared_);
     std::vector<Vec3> middles;
     for (const auto& body : scene_.plan_bodies()) middles.push_back(body ? body->home.position : Vec3(0.0));
@@ -116,6 +116,11 @@ void PlanAlternatives::rename(const std::string& name, const std::string& wanted
             true);
     if (!wanted_name_.second.empty() && wanted_name_.first != name)
         return bench_.tell(fmt::format("'{}' is still being renamed; try again in a moment", wanted_name_.first), true);
+    if (run_.changes_document()) {
+        plan::CasePlan plan = run_.document()->plan();
+        plan.alternatives[static_cast<std::size_t>(find(plan, name))].name = wanted;
+        return run_.document()->adopt(std::make_shared<const plan::CasePlan>(std::move(plan)));
+    }
     if (run_.may_begin_again()) wanted_name_ = {name, wanted};
 }
 
@@ -126,8 +131,7 @@ std::filesystem::path PlanAlternatives::take_changed() {
         return {};
     }
     try {
-        const auto written = std::filesystem::last_write_time(run_.file());
-        plan::CasePlan plan = plan::load_case_plan(run_.file());
+        plan::CasePlan plan = *run_.plan();
         const auto [name, wanted] = std::exchange(wanted_name_, {});
         const int place = find(plan, name);
         if (place < 0 || find(plan, wanted) >= 0)
@@ -135,10 +139,7 @@ std::filesystem::path PlanAlternatives::take_changed() {
         plan.alternatives[static_cast<std::size_t>(place)].name = wanted;
         const std::filesystem::path file = free_plan(run_.file().parent_path());
         plan::save_case_plan(plan, file);
-        if (std::filesystem::last_write_time(run_.file()) == written) return file;
-        // A step came meanwhile.
-        std::filesystem::remove(file);
-        wanted_name_ = {name, wanted};
+        return file;
     } catch (const std::exception& error) {
         wanted_name_ = {};
         bench_.tell(error.what(), true);
@@ -149,11 +150,11 @@ std::filesystem::path PlanAlternatives::take_changed() {
 bool PlanAlternatives::waits_for_list() const {
     // What the run refuses never comes.
     constexpr double longest_s = 5.0;
-    return run_.is_asked() || (asked_of_ == run_.written() && ImGui::GetTime() - asked_at_ < longest_s);
+    return run_.is_asked() || (asked_of_ == run_.version() && ImGui::GetTime() - asked_at_ < longest_s);
 }
 
 void PlanAlternatives::note_asked() {
-    asked_of_ = run_.written();
+    asked_of_ = run_.version();
     asked_at_ = ImGui::GetTime();
 }
 
@@ -201,7 +202,7 @@ void PlanAlternatives::list(const plan::CasePlan& plan) {
 void PlanAlternatives::draw() {
     if (!run_.plan()) return;
     const plan::CasePlan& plan = *run_.plan();
-    ImGui::BeginDisabled(!run_.is_live() || waits_for_list());
+    ImGui::BeginDisabled(!(run_.is_live() || run_.changes_document()) || waits_for_list());
     if (ImGui::Button("new from here")) go_to(static_cast<int>(plan.alternatives.size()));
     mark_spot("new from here");
     if (ImGui::IsItemHovered()) show_tooltip("begins an alternative at the plan as it is now");

@@ -49,12 +49,12 @@ private:
     CaseRun& run_;
     ScenePanel& scene_;
     std::string compared_, shown_;  ///< names; shown: what the scene has
-    std::filesystem::file_time_type of_{};
+    std::int64_t of_ = 0;
     std::vector<std::string> differences_;
     analysis::Beside<Numbers> counting_;
     std::vector<std::string> numbers_;
     std::pair<std::string, std::string> wanted_name_;  ///< of the alternative that gets another one, and that
-    std::filesystem::file_time_type asked_of_{};  ///< the plan of which the last press was
+    std::int64_t asked_of_ = 0;  ///< the plan of which the last press was
     double asked_at_ = -1e9;
     int renamed_ = -1;  ///< place of the alternative whose name is asked for
     bool wants_focus_ = false, wants_question_ = false;

@@ -40,7 +40,8 @@ void PlanPanel::add_commands(std::vector<Command>& all) {
     add("Undo a step of the plan", "back", can("undo"), [this] { case_.press("undo"); });
     add("Redo a step of the plan", "again", can("redo"), [this] { case_.press("redo"); });
     add(
-        "Another name for the alternative", "rename", [this] { return case_.plan() && case_.is_live(); },
+        "Another name for the alternative", "rename",
+        [this] { return case_.plan() && (case_.is_live() || case_.changes_document()); },
         [this] { alternatives_.ask_name(); });
     const auto free = [this] { return case_.plan() && !case_.is_busy(); };
     const auto study = [&](const char* name, const char* about, CaseRun::Study what) {

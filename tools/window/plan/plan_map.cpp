@@ -50,10 +50,10 @@ void PlanMap::tend() {
     if (!kind_ || making_.is_busy() || !run_.plan() || !scene_.is_fitted()) return;
     std::vector<std::shared_ptr<const observe::SeenBody>> bodies = scene_.plan_bodies();
     const auto seen = bodies.size() - static_cast<std::size_t>(std::ranges::count(bodies, nullptr));
-    if (seen == 0 || (made_ == kind_ && of_ == run_.written() && seen == seen_)) return;
+    if (seen == 0 || (made_ == kind_ && of_ == run_.version() && seen == seen_)) return;
     made_ = kind_;
     seen_ = seen;
-    of_ = run_.written();
+    of_ = run_.version();
     making_.begin(analysis::Lane::studies, [kind = *kind_, plan = *run_.plan(), folder = run_.file().parent_path(),
                                             bodies = std::move(bodies)](std::stop_token stop) {
         const StopScope scope(stop);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of the scene by gaps or by the distance from the healthy side: computed beside the window from the plan's
-// file, and again after each step.
+// Colours of the scene by gaps or by the distance from the healthy side: computed beside the window, and again
+// after each step.
 #pragma once
 
 #include "tools/analysis/beside.hpp"
@@ -39,7 +39,7 @@ private:
     ScenePanel& scene_;
     std::optional<Kind> kind_, made_;  ///< made: what `map_` or `making_` is of
     double range_ = 1e-3;
-    std::filesystem::file_time_type of_{};
+    std::int64_t of_ = 0;
     std::size_t seen_ = 0;  ///< bodies that were drawn when it was made
     analysis::Beside<render::SurfaceMap> making_;
     double drawn_range_ = 1e-3;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/plan/plan_panel.hpp"
 
+#include "assets/plan/plan_file.hpp"
+#include "assets/plan/plan_files.hpp"
 #include "dsp/fit/fit.hpp"
 #include "tools/window/frame/tooltip.hpp"
 #include "tools/window/widgets/spots.hpp"
@@ -64,11 +66,14 @@ void PlanPanel::fit_line() const {
         return fmt::format("fragment {}", place + 1);
     };
     const bool is_known = fit->verdict >= 0 && fit->verdict <= static_cast<int>(fit::FitVerdict::uncertain);
-    const std::string verdict = is_known ? std::string(fit::name_of(static_cast<fit::FitVerdict>(fit->verdict))) : "?";
+    if (!is_known) return ImGui::TextDisabled("%s: not fitted yet", name(fit->fragment).c_str());
+    const auto verdict = fit::name_of(static_cast<fit::FitVerdict>(fit->verdict));
     std::string text = fmt::format("{}: {}", name(fit->fragment), verdict);
-    if (fit->partner >= 0) text += fmt::format(", to {}", name(fit->partner));
-    text += fmt::format("; score {:.2f}, {:.2f} mm rms, gap {:.2f} mm, overlap {:.2f} mm deep", fit->score,
-                        fit->rms * 1e3, fit->gap * 1e3, fit->penetration * 1e3);
+    // Without a partner nothing was measured.
+    if (fit->partner < 0) text += "; nothing within reach fits it, bring it closer to its place";
+    else
+        text += fmt::format(", to {}; score {:.2f}, {:.2f} mm rms, gap {:.2f} mm, overlap {:.2f} mm deep",
+                            name(fit->partner), fit->score, fit->rms * 1e3, fit->gap * 1e3, fit->penetration * 1e3);
     ImGui::PushStyleColor(ImGuiCol_Text, fit->fits ? tone::good : tone::warm);
     ImGui::TextWrapped("%s", text.c_str());
     ImGui::PopStyleColor();
@@ -170,10 +175,35 @@ bool PlanPanel::may_change_hand() {
     return may;
 }
 
+/// The opened plan has got steps that the run lacks: restored ones, or those of another program.
+bool PlanPanel::waits_to_begin_again() {
+    wants_to_begin_again_ = case_.document()->take_begin_again() || wants_to_begin_again_;
+    // A run begins with the document as it is.
+    if (!case_.is_live()) wants_to_begin_again_ = false;
+    if (!wants_to_begin_again_ || !case_.is_settled()) return false;
+    wants_to_begin_again_ = false;
+    return true;
+}
+
 void PlanPanel::begin_again() {
     // One after the other: each has what the one before has changed.
     std::filesystem::path changed = flap_.flap().take_changed();
     if (changed.empty() && !flap_.flap().is_changing()) changed = alternatives_.take_changed();
+    PlanDocument* const document = case_.document();
+    try {
+        if (document && !changed.empty()) {
+            auto plan = plan::load_case_plan(changed);
+            plan::make_files_absolute(plan, std::filesystem::absolute(changed).parent_path());
+            document->adopt(std::make_shared<const plan::CasePlan>(std::move(plan)));
+            // Without a run the document is all that changes.
+            if (!case_.is_live()) {
+                std::filesystem::remove(changed);
+                return;
+            }
+        } else if (document && waits_to_begin_again()) changed = document->file_for_run(bench_.status()->folder);
+    } catch (const std::exception& error) {
+        return bench_.tell(error.what(), true);
+    }
     if (changed.empty()) return;
     // What the run has written is there after its end, too.
     const std::filesystem::path now = std::filesystem::absolute(case_.file());

@@ -60,9 +60,10 @@ private:
     PlanAlternatives alternatives_;
     FlapPanel flap_;
     bool may_change_hand();
+    bool waits_to_begin_again();
 
     std::size_t listed_ = 0;
-    bool has_told_to_let_go_ = false;
+    bool has_told_to_let_go_ = false, wants_to_begin_again_ = false;
 };
 
 }  // namespace tactus::window

@@ -74,9 +74,11 @@ std::vector<std::shared_ptr<const observe::SeenBody>> ScenePanel::plan_bodies() 
     return model_ ? model_->plan_bodies() : std::vector<std::shared_ptr<const observe::SeenBody>>();
 }
 
-void ScenePanel::use_plan(const std::filesystem::path& file, const plan::CasePlan& plan,
-                          std::filesystem::file_time_type written) {
-    if (model_) model_->use_plan(file, plan, written);
+void ScenePanel::use_plan(const std::filesystem::path& file, const plan::CasePlan& plan, std::int64_t version) {
+    // The model compares stamps only.
+    if (model_)
+        model_->use_plan(file, plan,
+                         std::filesystem::file_time_type(std::filesystem::file_time_type::duration(version)));
 }
 
 const std::map<std::size_t, SceneModel::PlanPiece>& ScenePanel::plan_pieces() const {

@@ -84,8 +84,7 @@ public:
     /// File of the plan in the scene, as the run began; empty: none.
     std::string plan_file() const;
     /// Draws vessels, plates, implants and sites of the plan as it is now; see SceneModel.
-    void use_plan(const std::filesystem::path& file, const plan::CasePlan& plan,
-                  std::filesystem::file_time_type written);
+    void use_plan(const std::filesystem::path& file, const plan::CasePlan& plan, std::int64_t version);
     /// Draws the fragments of a plan a second time, at these poses of their files and in another colour; empty: no longer.
     void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
     /// A place that slices share, m; a click on a surface moves it. None: there are no slices.

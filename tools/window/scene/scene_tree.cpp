@@ -16,7 +16,8 @@
 namespace tactus::window {
 
 void ScenePanel::draw_tree() {
-    if (!model_ || model_->parts().empty()) return ImGui::TextDisabled("The patch has no bones or bodies.");
+    if (!model_ || model_->parts().empty())
+        return ImGui::TextDisabled(is_empty() ? "The patch has no bones or bodies." : "Nothing is drawn yet.");
     const auto show_all = [&](bool wanted) {
         for (const SceneModel::Part& part : model_->parts()) model_->show_part(part.name, wanted);
         needs_picture_ = true;
