@@ -104,7 +104,8 @@ void FitPrecisionSum::add(const FitSurface& moving, const FitSurface& fixed, con
         const Vec3& voxel = face->field.grid.spacing;
         voxel_ = std::max({voxel_, voxel.x, voxel.y, voxel.z});
     }
-    std::array<Point, max_points> intact = points;
+    std::array<Point, max_points> intact;
+    std::copy_n(points.begin(), count, intact.begin());
     const std::size_t intact_count = intact_first({intact.data(), count});
     add_information(information_, {points.data(), count}, correlated);
     add_information(intact_information_, {intact.data(), intact_count}, intact_correlated);
