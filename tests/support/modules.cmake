@@ -5,7 +5,9 @@ include_guard(GLOBAL)
 # The product's modules are loaded from beside the program.
 foreach(folder tests tests/bench tests/campaign tests/fuzz)
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/${folder})
-  file(CREATE_LINK ${CMAKE_BINARY_DIR}/tactus-openvdb.so ${CMAKE_BINARY_DIR}/${folder}/tactus-openvdb.so SYMBOLIC)
+  foreach(module tactus-openvdb tactus-hdf5)
+    file(CREATE_LINK ${CMAKE_BINARY_DIR}/${module}.so ${CMAKE_BINARY_DIR}/${folder}/${module}.so SYMBOLIC)
+  endforeach()
 endforeach()
 
 # Loaded by bone_files.cpp.
