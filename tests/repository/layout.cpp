@@ -219,8 +219,9 @@ TEST_CASE("heavy libraries stay out of headers") {
     for (const auto room : rooms)
         for (const fs::path& file : files_under(room, {".hpp"}))
             for (const std::string& name : includes_of(file))
-                for (const std::string_view heavy : {"openvdb/", "CLI/", "nlohmann/", "toml++", "Eigen/", "gdcm",
-                                                     "bzlib.h", "hdf5", "kissfft", "zlib.h", "GL/", "EGL/", "portaudio"}) {
+                for (const std::string_view heavy :
+                     {"openvdb/", "CLI/", "nlohmann/", "toml++", "Eigen/", "gdcm", "bzlib.h", "hdf5", "kissfft",
+                      "zlib.h", "GL/", "EGL/", "portaudio"}) {
                     CAPTURE(file.string(), name);
                     CHECK_FALSE(name.starts_with(heavy));
                 }

@@ -38,7 +38,8 @@ Action declare_plan_move(VerbOptions& verb) {
     add_plan_options(verb, *choice);
     add_fragments(verb, *choice, "which one").count(1);
     verb.add("--pose", choice->pose, "X,Y,Z,QW,QX,QY,QZ: p_case = R p_file + t, in mm");
-    verb.add("--transform", choice->transform, "transform of ITK or 3D Slicer (.tfm, .h5) that moves the file's bone there");
+    verb.add("--transform", choice->transform,
+             "transform of ITK or 3D Slicer (.tfm, .h5) that moves the file's bone there");
     return [choice] { return move_fragment(*choice); };
 }
 
