@@ -367,6 +367,7 @@ private:
     /// `line`: as the worker wrote it; empty: written here.
     void settle(const Task& task, const Row& row, const std::string& line) {
         largest_peak_ = std::max(largest_peak_, row.peak);
+        if (!row.is_ok && is_being_ended(row)) return;
         const bool is_rejected =
             row.reason.find(fmt::format("exit code {}: ", static_cast<int>(bad_input))) != std::string::npos &&
             std::ranges::all_of(folder_.sweep().steps, &sweep::Step::is_own);
@@ -381,6 +382,14 @@ private:
         sum_ += row.seconds;
         squares_ += row.seconds * row.seconds;
         longest_ = std::max(longest_, row.seconds);
+    }
+
+    /// A scheduler ends a job by SIGTERM to all of its processes, in no particular order: a point that met it did not
+    /// fail, it was never finished.
+    bool is_being_ended(const Row& row) const {
+        if (!is_stopped() && row.reason.find("signal 15") != std::string::npos)
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        return is_stopped();
     }
 
     /// Time and memory of running points.

@@ -182,7 +182,8 @@ std::uint64_t keep_file(const fs::path& from, const fs::path& to, bool is_copied
     std::error_code failure;
     fs::create_directories(to.parent_path(), failure);
     if (!failure) fs::copy_file(from, to, failure);
-    if (failure) throw Error(fmt::format("{}: cannot be written: {}", to.string(), failure.message()));
+    // Without the folder, which differs from point to point: equal failures are counted together.
+    if (failure) throw Error(fmt::format("{} cannot be kept: {}", to.filename().string(), failure.message()));
     return hash.value();
 }
 

@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace tactus::command {
 
 std::filesystem::path this_program() {
@@ -64,10 +62,9 @@ std::string results_text(const analysis::Results& results) {
     for (const std::string& conflict : results.conflicts()) text += fmt::format("conflict: {}\n", conflict);
     text += fmt::format("{} of {} done, {} failed, {} to run\n", results.done(), counted(results.size(), "point"),
                         results.failed(), results.unfinished());
-    if (results.repeated() > 0)
-        text += fmt::format(
-            "{} run more than once, with equal results\n",
-            counted(results.repeated() - std::min(results.repeated(), results.conflicts().size()), "point"));
+    if (results.repeated() > results.conflicts().size())
+        text += fmt::format("{} run more than once, with equal results\n",
+                            counted(results.repeated() - results.conflicts().size(), "point"));
     if (results.foreign() > 0)
         text +=
             fmt::format("{} in the logs of points that the sweep no longer has\n", counted(results.foreign(), "row"));
