@@ -23,7 +23,7 @@ using display::Figure;
 using display::FigurePoint;
 using sweep::FigureChoice;
 
-constexpr double panel_gap = 96.0, top = 62.0, bottom = 60.0, line_height = 230.0, row_gap = 84.0;
+constexpr double panel_gap = 96.0, top = 62.0, bottom = 60.0, line_height = 230.0, row_gap = 84.0, legend_width = 150.0;
 
 std::string axis_title(const sweep::Axis& axis) {
     return axis.has_numbers && !axis.unit.empty() ? fmt::format("{}, {}", axis.name, axis.unit) : axis.name;
@@ -81,7 +81,7 @@ struct Positions {
     explicit Positions(const sweep::Axis& axis) {
         double low = 1e300, high = -1e300;
         for (const sweep::Level& level : axis.levels) {
-            const double v = axis.has_numbers ? level.number : static_cast<double>(at.size());
+            const double v = axis.has_numbers ? level.number : static_cast<double>(at.size() + 1);
             at.push_back(v);
             low = std::min(low, v);
             high = std::max(high, v);
@@ -143,7 +143,7 @@ struct Layout {
 Figure draw_lines(const FigureData& data) {
     const Layout layout{data.panel ? data.panel->levels.size() : 1,
                         std::min<std::size_t>(3, data.panel ? data.panel->levels.size() : 1), 260.0, line_height};
-    Figure figure = layout.figure(data.series ? 90.0 : 0.0);
+    Figure figure = layout.figure(data.series ? legend_width : 0.0);
     const Positions across(*data.x);
     const Scale up = value_scale(data);
     const std::size_t lines = data.series ? data.series->levels.size() : 1;
@@ -152,11 +152,18 @@ Figure draw_lines(const FigureData& data) {
         const Axes axes{figure, corner.x, corner.y, layout.width, layout.height, across.scale, up};
         axes.draw(panel_title(data, p), across.has_names ? "" : axis_title(*data.x), value_title(data.choice));
         if (across.has_names) {
+            std::size_t longest = 0;
             for (std::size_t l = 0; l < across.at.size(); ++l)
-                figure.text({axes.at(across.at[l], up.low).x, corner.y + layout.height + 14.0}, level_text(*data.x, l),
-                            10.0, axis_ink, display::TextAnchor::middle);
-            figure.text({corner.x + layout.width, corner.y + layout.height + 28.0}, data.x->name, 10.0, axis_soft,
-                        display::TextAnchor::end);
+                longest = std::max(longest, level_text(*data.x, l).size());
+            // Long names in two rows.
+            const double room = layout.width / static_cast<double>(across.at.size());
+            const double drop = 6.0 * static_cast<double>(longest) > room ? 12.0 : 0.0;
+            for (std::size_t l = 0; l < across.at.size(); ++l)
+                figure.text(
+                    {axes.at(across.at[l], up.low).x, corner.y + layout.height + 14.0 + (l % 2 == 1 ? drop : 0.0)},
+                    level_text(*data.x, l), 10.0, axis_ink, display::TextAnchor::middle);
+            figure.text({corner.x + layout.width, corner.y + layout.height + 28.0 + drop}, data.x->name, 10.0,
+                        axis_soft, display::TextAnchor::end);
         }
         if (!data.choice.minus.empty()) axes.level(0.0, axis_soft, "");
         for (std::size_t s = 0; s < lines; ++s) {
@@ -165,18 +172,24 @@ Figure draw_lines(const FigureData& data) {
             for (const FigureCell& cell : data.cells) {
                 if (cell.panel != p || cell.series != s || (up.is_log && cell.value <= 0.0)) continue;
                 const double x = across.at[cell.x];
-                curve.push_back({x, cell.value});
-                const FigurePoint low = axes.at(x, up.is_log ? std::max(cell.low, up.low) : cell.low),
-                                  high = axes.at(x, cell.high);
+                FigurePoint at = axes.at(x, cell.value),
+                            low = axes.at(x, up.is_log ? std::max(cell.low, up.low) : cell.low),
+                            high = axes.at(x, cell.high);
+                // Beside each other, so that equal values of two lines are both seen.
+                const double aside = 4.0 * (static_cast<double>(s) - 0.5 * static_cast<double>(lines - 1));
+                for (FigurePoint* point : {&at, &low, &high}) point->x += aside;
+                curve.push_back(at);
+                figure.rectangle(at.x - 2.5, at.y - 2.5, 5.0, 5.0, colour);
+                if (cell.count < 2) continue;
                 figure.line({low, high}, colour, 1.2);
                 for (const FigurePoint end : {low, high})
                     figure.line({{end.x - 3.0, end.y}, {end.x + 3.0, end.y}}, colour, 1.2);
             }
-            axes.curve(curve, colour, 3.0 * static_cast<double>(s / curve_colours.size()), true);
+            if (curve.size() > 1) figure.line(curve, colour, 1.5, 3.0 * static_cast<double>(s / curve_colours.size()));
         }
     }
     for (std::size_t s = 0; data.series && s < lines; ++s) {
-        const double x = figure.width() - 96.0, y = top + 18.0 * static_cast<double>(s) + 18.0;
+        const double x = figure.width() - legend_width - 6.0, y = top + 18.0 * static_cast<double>(s) + 18.0;
         if (s == 0) figure.text({x, top + 2.0}, short_text(axis_title(*data.series)), 10.0, axis_soft);
         figure.line({{x, y - 3.5}, {x + 16.0, y - 3.5}}, curve_colours[s % curve_colours.size()], 2.5,
                     3.0 * static_cast<double>(s / curve_colours.size()));
