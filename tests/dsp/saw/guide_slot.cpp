@@ -23,7 +23,7 @@ namespace {
 constexpr double clearance = 0.25 * mm, depth = 15.0 * mm, kerf = 1.0 * mm;
 const double play = std::atan(2.0 * clearance / depth);
 
-saw::SawShape sagittal() {
+saw::SawShape guided_blade() {
     saw::SawShape shape;
     shape.kind = saw::SawKind::sagittal;
     shape.length = 12.0 * mm;
@@ -86,11 +86,11 @@ Result saw_with(const Hand& hand, bool guided) {
     const auto bone = bone_block(plate), guide = guide_above();
     const volume::Grid before = volume::to_grid(bone->current());
     const volume::BoneSnapshot solid = guide->current();
-    Sawing sawing(*bone, 1000.0, 40e3, sagittal());
+    Sawing sawing(*bone, 1000.0, 40e3, guided_blade());
     sawing.law = saw::CuttingLaw{}.sharpened(6.0);
     if (guided) sawing.guide = &solid;
     const std::vector<saw::GuideSlot> slots{slot_above()};
-    saw::SlotHold hold(sagittal(), {.stiffness = 10e3, .thickness = kerf});
+    saw::SlotHold hold(guided_blade(), {.stiffness = 10e3, .thickness = kerf});
     const Quat straight = teeth_down, tilted = rotation_by(Vec3(hand.tilt, 0.0, 0.0)) * teeth_down;
     // In over the mouth, straight; then the hand tilts.
     simulate::ScriptOperator moves({{0.0, {Vec3(0.0, 0.0, 18.0 * mm), straight}},
@@ -151,7 +151,7 @@ Result saw_with(const Hand& hand, bool guided) {
 }  // namespace
 
 TEST_CASE("a blade that a slot holds never passes its walls, wherever the hand goes") {
-    const saw::SawShape shape = sagittal();
+    const saw::SawShape shape = guided_blade();
     const std::vector<saw::GuideSlot> slots{slot_above()};
     const Random random{7};
     int touched = 0;
@@ -179,7 +179,7 @@ TEST_CASE("a blade that a slot holds never passes its walls, wherever the hand g
 }
 
 TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
-    const saw::SawShape shape = sagittal();
+    const saw::SawShape shape = guided_blade();
     const std::vector<saw::GuideSlot> slots{slot_above()};
     const Random random{11};
     for (std::uint64_t run = 0; run < 30; ++run) {
@@ -229,7 +229,7 @@ TEST_CASE("a running blade that misses the slot stops at the guide, and is free 
     const volume::BoneSnapshot solid = guide->current();
     for (const bool running : {false, true})
         for (const double aside : {-2.5 * mm, 2.8 * mm}) {
-            Sawing sawing(*bone, 1000.0, 40e3, sagittal());
+            Sawing sawing(*bone, 1000.0, 40e3, guided_blade());
             sawing.guide = &solid;
             sawing.drive.running = running;
             double z = 17.0 * mm, deepest = 1.0;
