@@ -64,10 +64,16 @@ Cut cut_of(const cutting_guide::MadeGuide& made, const cutting_guide::MadeSlot& 
     cut.width = slot.width;
     cut.is_ledge = slot.sides == cutting_guide::Sides::one;
     cut.from = 1.0, cut.to = -1.0;
+    // The outline of the bone in the plane of the cut.
     for (const auto& t : bone.triangles)
-        for (const int v : t) {
-            const Vec3 d = bone.vertices[static_cast<std::size_t>(v)] - cut.point;
-            if (std::abs(glm::dot(d, cut.normal)) > 1.5 * mm || glm::length(d) > 45.0 * mm) continue;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const Vec3 a = bone.vertices[static_cast<std::size_t>(t[n])] - cut.point,
+                       b = bone.vertices[static_cast<std::size_t>(t[(n + 1) % 3])] - cut.point;
+            const double from = glm::dot(a, cut.normal), to = glm::dot(b, cut.normal);
+            if ((from < 0.0) == (to < 0.0)) continue;
+            const Vec3 d = a + (from / (from - to)) * (b - a);
+            // Farther away the plane passes another part of the bone.
+            if (glm::length(d) > 45.0 * mm) continue;
             cut.depth = std::max(cut.depth, glm::dot(d, cut.feed));
             cut.from = std::min(cut.from, glm::dot(d, cut.stroke));
             cut.to = std::max(cut.to, glm::dot(d, cut.stroke));
@@ -174,7 +180,7 @@ private:
 };
 
 std::string listed(const Vec3& v, double unit, const char* name) {
-    return fmt::format("\"{:.6g} {}, {:.6g} {}, {:.6g} {}\"", v.x / unit, name, v.y / unit, name, v.z / unit, name);
+    return fmt::format("\"{:.9g} {}, {:.9g} {}, {:.9g} {}\"", v.x / unit, name, v.y / unit, name, v.z / unit, name);
 }
 std::string direction(const Vec3& v) { return fmt::format("[{:.12g}, {:.12g}, {:.12g}]", v.x, v.y, v.z); }
 
