@@ -51,6 +51,7 @@ struct SawCase : test::JawCase {
 
 }  // namespace
 
+// Costly: makes a guide of four slots, and samples it and its bone.
 TEST_CASE("a guide's task has a cut and a slot per osteotomy, each on the plan", "[slow]") {
     const SawCase made;
     const training::Task task = training::load_task(made.task);
