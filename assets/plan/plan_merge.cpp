@@ -101,7 +101,13 @@ std::vector<std::string> merge(CasePlan& plan, const CasePlan& other, const Case
             if (before && is_same(from_base->place(*before), place)) continue;
         } else if (mine && !into.is_new(place)) continue;
         std::string name = theirs.name;
-        for (int n = 2; place_named(merged, name); ++n) name = fmt::format("{} ({})", theirs.name, n);
+        bool is_known = false;
+        for (int n = 2; const auto known = place_named(merged, name); ++n) {
+            is_known = is_known || is_same(*known, place);
+            name = fmt::format("{} ({})", theirs.name, n);
+        }
+        // Of an earlier merge.
+        if (is_known) continue;
         merged.alternatives.push_back({name, place});
         added.push_back(std::move(name));
     }

@@ -46,7 +46,8 @@ TEST_CASE("two versions of a plan combine to all steps of both and the other way
     CHECK((is_locked(mine, 0, 1) && !is_locked(mine, 0, 2)));
     CHECK((is_locked(mine, 1, 2) && !is_locked(mine, 1, 1)));
     CHECK((is_locked(mine, 0, 0) && is_locked(mine, 1, 0)));
-    // Again: nothing is new.
+    // Again: nothing is new, also where the other version does not know of the merge.
+    CHECK(plan::merge(mine, theirs, &base).empty());
     const std::string content = plan::content_of(mine);
     plan::CasePlan again = mine;
     CHECK(plan::merge(again, mine, &base).empty());

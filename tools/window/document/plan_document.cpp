@@ -65,6 +65,11 @@ void PlanDocument::adopt(const std::shared_ptr<const plan::CasePlan>& newest) {
     if (!foreign_) return set(*newest);
     plan::CasePlan merged = *newest;
     plan::merge(merged, *foreign_, &*foreign_base_);
+    // A version that has all steps of the other program goes on from the merged plan.
+    if (merged.steps.size() == newest->steps.size()) {
+        foreign_.reset();
+        return set(*newest);
+    }
     set(std::move(merged));
 }
 
