@@ -182,7 +182,9 @@ void SceneModel::show_bodies() {
             Pose pose = object.pose;
             const SceneOutline::Held* held = nullptr;
             for (const auto& candidate : outline_.held)
+                // Nothing is held by a node that does not run.
                 if (candidate.scene == scene->port &&
+                    (candidate.place.empty() || observer_.latest<double>(candidate.place)) &&
                     std::lround(number_of(candidate.place, candidate.held)) == static_cast<long>(i))
                     held = &candidate;
             // The pose from the node that holds a body takes precedence.

@@ -155,7 +155,7 @@ void Desk::draw() {
     // On a narrow window the words of the run need the room of the menus.
     draw_menus(commands_, static_cast<double>(ImGui::GetWindowWidth()) > 1000.0 * fonts_.scale ? 1e9 : 0.0,
                std::exchange(wants_menus_, false));
-    run_bar(bench_, *bench_.status(), take_, fonts_);
+    run_bar(bench_, *bench_.status(), take_, edit_buttons(), fonts_);
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/window/desk/questions.hpp"
+#include "tools/window/desk/run_bar.hpp"
 #include "tools/window/desk/take_bench.hpp"
 #include "tools/window/document/plan_document.hpp"
 #include "tools/window/document/plan_preview.hpp"
@@ -121,6 +122,7 @@ private:
     std::vector<Command> all_commands();
     void ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done);
     void ask_open();
+    EditButtons edit_buttons();
     void save();
     bool save_plan();
     void ask_save_plan_as();

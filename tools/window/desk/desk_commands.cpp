@@ -39,11 +39,11 @@ void Desk::add_edit_commands(std::vector<Command>& all) {
     const auto has_any = [may, this] { return may() && patch_.has_chosen(); };
     const auto has_several = [may, this] { return may() && patch_.chosen.size() > 1; };
     using Align = PatchPanel::Align;
-    all.push_back({"Edit", "Undo", "Ctrl+Z", "back revert", [this] { bench_.undo(); },
-                   [this] { return !start_page_.is_open && bench_.editor().can_undo(); }});
-    const auto can_redo = [this] { return !start_page_.is_open && bench_.editor().can_redo(); };
-    all.push_back({"Edit", "Redo", "Ctrl+Y", "again", [this] { bench_.redo(); }, can_redo});
-    all.push_back({"", "Redo", "Ctrl+Shift+Z", "again", [this] { bench_.redo(); }, can_redo});
+    all.push_back({"Edit", "Undo", "Ctrl+Z", "back revert", [this] { edit_buttons().undo(); },
+                   [this] { return !start_page_.is_open && edit_buttons().can_undo; }});
+    const auto can_redo = [this] { return !start_page_.is_open && edit_buttons().can_redo; };
+    all.push_back({"Edit", "Redo", "Ctrl+Y", "again", [this] { edit_buttons().redo(); }, can_redo});
+    all.push_back({"", "Redo", "Ctrl+Shift+Z", "again", [this] { edit_buttons().redo(); }, can_redo});
     all.push_back({"Edit", "Cut", "Ctrl+X", "nodes comments", [this] { patch_.cut(); }, has_any, nullptr, true});
     all.push_back({"Edit", "Copy", "Ctrl+C", "nodes comments", [this] { patch_.copy(); }, has_any});
     all.push_back({"Edit", "Paste", "Ctrl+V", "nodes comments", [this] { patch_.paste(); }, may});

@@ -40,6 +40,19 @@ void Desk::end_typing() {
     patch_.end_typing();
 }
 
+/// Where the patch is not in front, they mean the plan.
+EditButtons Desk::edit_buttons() {
+    const bool is_saved = bench_.editor().is_saved() && (!plan_document_ || plan_document_->is_saved());
+    if (!plan_document_ || layout == Layout::patch)
+        return {bench_.editor().can_undo(), bench_.editor().can_redo(), is_saved,
+                [this] { bench_.undo(); },  [this] { bench_.redo(); },  [this] { save(); }};
+    CaseRun& run = plan_.case_run();
+    const std::vector<StepLine>& steps = run.steps();
+    const bool has_done = !steps.empty() && steps.front().is_done, has_undone = !steps.empty() && !steps.back().is_done;
+    return {has_done && run.can_press("undo"), has_undone && run.can_press("redo"), is_saved,
+            [&run] { run.press("undo"); },     [&run] { run.press("redo"); },       [this] { save(); }};
+}
+
 void Desk::save() {
     end_typing();
     const bool is_plan_saved = !plan_document_ || plan_document_->is_saved();

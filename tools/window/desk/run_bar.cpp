@@ -196,8 +196,8 @@ void show_faults(Workbench& bench) {
     else wants_faults = true;
 }
 
-void run_bar(Workbench& bench, const RunStatus& status, TakeBench* take, const Fonts& fonts) {
-    const char* const save = bench.editor().is_saved() ? "Saved" : "Save";
+void run_bar(Workbench& bench, const RunStatus& status, TakeBench* take, const EditButtons& edits, const Fonts& fonts) {
+    const char* const save = edits.is_saved ? "Saved" : "Save";
     const ImGuiStyle& style = ImGui::GetStyle();
     float wide = 3.0f * 2.0f * style.FramePadding.x + 3.0f * style.ItemSpacing.x + style.WindowPadding.x;
     for (const char* label : {"Undo", "Redo", save}) wide += ImGui::CalcTextSize(label).x;
@@ -216,16 +216,16 @@ void run_bar(Workbench& bench, const RunStatus& status, TakeBench* take, const F
     run_buttons(bench, status);
     ImGui::SameLine(words_end);
     history_of_faults(status);
-    ImGui::BeginDisabled(!bench.editor().can_undo());
-    if (button("Undo")) bench.undo();
+    ImGui::BeginDisabled(!edits.can_undo);
+    if (button("Undo")) edits.undo();
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::BeginDisabled(!bench.editor().can_redo());
-    if (button("Redo")) bench.redo();
+    ImGui::BeginDisabled(!edits.can_redo);
+    if (button("Redo")) edits.redo();
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::BeginDisabled(bench.editor().is_saved());
-    if (button(save)) bench.save();
+    ImGui::BeginDisabled(edits.is_saved);
+    if (button(save)) edits.save();
     ImGui::EndDisabled();
 }
 
