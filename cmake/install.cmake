@@ -20,7 +20,7 @@ install(TARGETS tactus-device-host tactus-scan-decoder RUNTIME DESTINATION ${CMA
 tactus_place(TACTUS_INSTALLED_PROGRAMS ${CMAKE_INSTALL_FULL_LIBEXECDIR}/tactus
              devices/hosted/host_process.cpp assets/volume/dicom_reader.cpp)
 
-install(TARGETS tactus-openvdb tactus-hdf5 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactus COMPONENT common)
+install(TARGETS tactus-openvdb tactus-hdf5 tactus-cairo LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactus COMPONENT common)
 tactus_place(TACTUS_INSTALLED_MODULES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus assets/file/module.cpp)
 
 # Nodes from outside that all users have.

@@ -123,7 +123,8 @@ function(tactus_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${name}/*.cpp)
   # Programs of their own.
   list(FILTER sources EXCLUDE REGEX "/(main|make_library)\\.cpp$")
-  list(FILTER sources EXCLUDE REGEX "/tools/(bench|embed)/|/assets/(bone/openvdb|transform/hdf5|volume/decoder)/")
+  list(FILTER sources EXCLUDE REGEX
+       "/tools/(bench|embed)/|/assets/(bone/openvdb|transform/hdf5|volume/decoder)/|/devices/display/cairo/")
   if(NOT sources)
     file(WRITE ${CMAKE_BINARY_DIR}/empty_${name}.cpp "")
     set(sources ${CMAKE_BINARY_DIR}/empty_${name}.cpp)

@@ -4,6 +4,8 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
+#include <cmath>
+
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #if defined(__GNUC__)
@@ -70,13 +72,23 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-std::string png_bytes(const Image& image) {
+std::string png_bytes(const Image& image, double dpi) {
     std::string bytes;
     const auto append = [](void* to, void* data, int size) {
         static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
     };
     if (stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(), 3 * image.width) == 0)
         throw Error("a picture cannot be compressed");
+    if (dpi > 0.0) {
+        constexpr std::size_t end_of_header = 33;  // signature and IHDR
+        const auto per_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));
+        std::string resolution, chunk;
+        append_number(resolution, per_metre);
+        append_number(resolution, per_metre);
+        resolution += '\1';  // per metre
+        append_chunk(chunk, "pHYs", resolution);
+        bytes.insert(end_of_header, chunk);
+    }
     return bytes;
 }
 

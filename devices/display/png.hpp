@@ -22,7 +22,7 @@ std::string palette_png_bytes(int columns, int rows, std::span<const std::uint8_
 /// Encodes bytes as Base64, for images inside SVG and HTML.
 std::string base64(std::string_view bytes);
 
-/// Returns the bytes of a PNG file, for HTML pages with embedded images.
-std::string png_bytes(const Image& image);
+/// Returns the bytes of a PNG file. `dpi` 0: it states no resolution.
+std::string png_bytes(const Image& image, double dpi = 0.0);
 
 }  // namespace tactus::display

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a node of a patch costs does not grow with the patch.
 #include "engine/run/engine.hpp"
-#include "graph/analyse/draw.hpp"
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "nodes/catalogue.hpp"
@@ -72,7 +71,7 @@ compile::Schedule compiled(const std::string& text) {
     return std::move(*plan);
 }
 
-/// Reads, compiles, analyses, draws, runs and edits a patch: processor time per node, s.
+/// Reads, compiles, analyses, runs and edits a patch: processor time per node, s.
 double time_per_node(std::string (*patch_of)(int), int nodes) {
     const std::string text = patch_of(nodes);
     std::string edited = text;
@@ -87,7 +86,6 @@ double time_per_node(std::string (*patch_of)(int), int nodes) {
         compile::Schedule plan = compiled(text);
         analyse::path_latencies(plan);
         analyse::force_loops(plan, [](const std::string&) { return DeviceInfo{.name = {}, .damping = 1.0}; });
-        REQUIRE_FALSE(analyse::draw_svg(plan).empty());
         run::EngineOptions options;
         options.seconds = 0.02;
         run::Engine engine(std::move(plan), options);

@@ -5,8 +5,8 @@ include_guard(GLOBAL)
 # The product's modules are loaded from beside the program.
 foreach(folder tests tests/bench tests/campaign tests/fuzz)
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/${folder})
-  foreach(module tactus-openvdb tactus-hdf5)
-    file(CREATE_LINK ${CMAKE_BINARY_DIR}/${module}.so ${CMAKE_BINARY_DIR}/${folder}/${module}.so SYMBOLIC)
+  foreach(module openvdb hdf5 cairo)
+    file(CREATE_LINK ${CMAKE_BINARY_DIR}/tactus-${module}.so ${CMAKE_BINARY_DIR}/${folder}/tactus-${module}.so SYMBOLIC)
   endforeach()
 endforeach()
 

@@ -15,7 +15,7 @@
 #include "tools/analysis/saw/saw_trial.hpp"
 #include "tools/analysis/saw/solid_sweep.hpp"
 #include "tools/bench/bench.hpp"
-#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/figure_file.hpp"
 #include "tools/report/figures/saw_figure.hpp"
 
 #include <fmt/format.h>
@@ -416,7 +416,7 @@ Verb saw_verb() {
                 verb.add("--rounds", choice->rounds, "repetitions of each timing; the best counts")
                     .shows_default()
                     .range(1, 100);
-                verb.add("--figure", choice->figure, "draw the law and the measurements to this .svg or .png");
+                verb.add("--figure", choice->figure, "draw the law and the measurements to this .svg, .png or .pdf");
                 verb.add("--bone", choice->bones,
                          "instead: feed and removed volume over thrust on this imported bone; may be given again")
                     .one_each();

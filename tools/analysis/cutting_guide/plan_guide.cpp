@@ -4,7 +4,7 @@
 #include "tools/analysis/plan/case_warnings.hpp"
 
 #include "assets/mesh/mesh.hpp"
-#include "devices/display/outline_font.hpp"
+#include "devices/display/figure_painter.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/self_intersection.hpp"
@@ -43,13 +43,13 @@ public:
     explicit Letters(double height) {
         double ignored = 0.0;
         double low = 0.0;
-        for (const auto& outline : font_.outlines("H", 1.0, ignored))
+        for (const auto& outline : display::figure_painter().outlines("H", 1.0, true, ignored))
             for (const auto& p : outline) low = std::min(low, p.y);
         size_ = height / -low;
     }
     GuideText text(const std::string& words) const {
         GuideText made;
-        for (const auto& outline : font_.outlines(words, size_, made.width)) {
+        for (const auto& outline : display::figure_painter().outlines(words, size_, true, made.width)) {
             auto& to = made.outlines.emplace_back();
             for (const auto& p : outline) to.emplace_back(p.x, -p.y);
         }
@@ -57,7 +57,6 @@ public:
     }
 
 private:
-    display::OutlineFont font_{true};
     double size_ = 1.0;
 };
 

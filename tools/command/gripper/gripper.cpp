@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus gripper: measures how faithfully a gripper renders objects on the test rig.
 #include "assets/file/whole_file.hpp"
-#include "devices/display/png.hpp"
 #include "tools/analysis/gripper/rig_series.hpp"
 #include "tools/analysis/gripper/rig_study.hpp"
 #include "tools/analysis/workers.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/gripper/rig_text.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
@@ -26,6 +26,7 @@ struct RigChoice {
     run::PatchChoice patch;  // or a CSV record of a rig
     std::filesystem::path matrix, out;
     int threads = 0;           // 0: one per core
+    FigureChoice figure;
     bool keep_series = false;  // write the samples to series.csv
     bool json = false;
 };
@@ -72,9 +73,9 @@ int judge(const RigChoice& choice) {
     file::write_whole_file(choice.out / "rig.json", json);
     file::write_whole_file(choice.out / "rig.csv", rig_csv(report));
     file::write_whole_file(choice.out / "report.html", report::rig_html(report));
-    display::write_png(report::draw_rig_errors(report).image(), (choice.out / "errors.png").string());
+    save_figure(report::draw_rig_errors(report), choice.out / "errors.png", choice.figure);
     if (!report.crossover.empty())
-        display::write_png(report::draw_rig_crossover(report).image(), (choice.out / "crossover.png").string());
+        save_figure(report::draw_rig_crossover(report), choice.out / "crossover.png", choice.figure);
     fmt::print("{}", choice.json ? json : rig_text(report));
     return done;
 }
@@ -89,6 +90,7 @@ Action declare_gripper(VerbOptions& verb) {
     verb.old("--threads", "--jobs");
     verb.flag("--series", choice->keep_series,
               "also write all samples to series.csv, a record that this verb can read");
+    add_figure_options(verb, choice->figure);
     verb.flag("--json", choice->json, "print the result as JSON");
     return [choice] { return judge(*choice); };
 }

@@ -6,6 +6,7 @@
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
 #include "tools/command/plan/plan_options.hpp"
+#include "tools/report/blocks/pages.hpp"
 #include "tools/report/figures/html_report.hpp"
 #include "tools/report/plan/plan_page.hpp"
 #include "tools/report/reconstruction/flap_report.hpp"
@@ -48,7 +49,11 @@ int report(const ReportChoice& choice) {
         report::plan_blocks(plan, warnings.all, std::move(fragments), std::move(residuals),
                             healthy ? &*healthy : nullptr, report::flap_blocks(plan, folder));
     file::write_whole_file(out, report::html::page(plan.title, report::html_of(blocks, "plan")));
-    if (!choice.pdf.empty()) file::write_whole_file(choice.pdf, report::pdf_of(plan.title, blocks));
+    if (!choice.pdf.empty()) {
+        const report::Pdf pdf = report::pdf_of(plan.title, blocks);
+        file::write_whole_file(choice.pdf, pdf.bytes);
+        if (!pdf.warning.empty()) fmt::print(stderr, "warning: {}: {}\n", choice.pdf.string(), pdf.warning);
+    }
     file::Json written{{"report", out.string()}};
     if (!choice.pdf.empty()) written["pdf"] = choice.pdf.string();
     if (choice.json) fmt::print("{}\n", written.dump(2));

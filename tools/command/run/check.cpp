@@ -4,12 +4,12 @@
 #include "graph/analyse/stiffness.hpp"
 #include "tools/analysis/passivity/z_width.hpp"
 #include "tools/analysis/patch_stiffness.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/check_rows.hpp"
 #include "tools/command/run/check_schedule.hpp"
 #include "tools/command/run/check_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/figures/z_width_figure.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/terminal.hpp"
@@ -32,7 +32,8 @@ namespace {
 struct CheckChoice {
     run::PatchChoice patch;
     bool json = false, z_width = false;
-    std::string z_width_figure;
+    std::filesystem::path z_width_figure;
+    FigureChoice figure;
 };
 
 /// The figures of a device by its name in the patch; "" is the only one.
@@ -105,7 +106,7 @@ int check(const CheckChoice& choice) {
                 const std::vector<analysis::ZWidthCurve> curves = z_width_of(engine.host());
                 json["z_width"] = z_width_json(curves);
                 if (!choice.z_width_figure.empty())
-                    report::write_figure(report::draw_z_width(curves), choice.z_width_figure);
+                    save_figure(report::draw_z_width(curves), choice.z_width_figure, choice.figure);
             }
         }
     } catch (const Error& error) {
@@ -131,7 +132,8 @@ Action declare_check(VerbOptions& verb) {
         "--z-width", choice->z_width,
         "also which walls, by stiffness and damping, the devices of the patch and simulated ones bear, per rate and "
         "delay");
-    verb.add("--z-width-figure", choice->z_width_figure, "draw that to this .svg or .png");
+    verb.add("--z-width-figure", choice->z_width_figure, "draw that to this .svg, .png or .pdf");
+    add_figure_options(verb, choice->figure);
     return [choice] { return check(*choice); };
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/analyse/draw.hpp"
-#include "assets/file/whole_file.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/report/patch/patch_figure.hpp"
 #include "tools/run/load_plan.hpp"
 
 #include <fmt/format.h>
@@ -17,27 +17,29 @@ namespace {
 struct DrawChoice {
     run::PatchChoice patch;
     std::filesystem::path out;
+    FigureChoice figure;
 };
 
-int draw(const run::PatchChoice& choice, const std::filesystem::path& out) {
+int draw(const DrawChoice& choice) {
     patch::Problems problems;
-    const std::optional<compile::Schedule> plan = run::read_plan(choice, problems);
+    const std::optional<compile::Schedule> plan = run::read_plan(choice.patch, problems);
     run::throw_problems(problems);
-    const std::string svg = analyse::draw_svg(*plan);
-    if (out.empty()) fmt::print("{}", svg);
-    else file::write_whole_file(out, svg);
+    const display::Figure figure = report::draw_patch(*plan);
+    if (choice.out.empty()) fmt::print("{}", figure.svg());
+    else save_figure(figure, choice.out, choice.figure);
     return done;
 }
 
 Action declare_draw(VerbOptions& verb) {
     const auto choice = std::make_shared<DrawChoice>();
     add_patch_options(verb, choice->patch);
-    verb.add("-o,--out", choice->out, "file (default: standard output)");
-    return [choice] { return draw(choice->patch, choice->out); };
+    verb.add("-o,--out", choice->out, "file, .svg, .png or .pdf (default: SVG on standard output)");
+    add_figure_options(verb, choice->figure);
+    return [choice] { return draw(*choice); };
 }
 
 }  // namespace
 
-Verb draw_verb() { return {"draw", "draw the graph as SVG", declare_draw}; }
+Verb draw_verb() { return {"draw", "draw the graph", declare_draw}; }
 
 }  // namespace tactus::command

@@ -4,6 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/vibration/comparison_text.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
@@ -30,8 +31,8 @@ using analysis::ComparedPair;
 struct CompareChoice {
     analysis::CompareSettings settings;
     fs::path thresholds;
-    std::string plot;                                // .svg or .png
-    fs::path report, table;                          // .html, .csv
+    fs::path plot, report, table;                    // a figure, .html, .csv
+    FigureChoice figure;
     std::string touch = "displacement", axes = "strongest";
     std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
     std::string where;                               // rows of CSV logs
@@ -98,10 +99,10 @@ std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::
 }
 
 int compare_one(const CompareChoice& choice, const analysis::CompareSettings& settings) {
-    if (!choice.plot.empty() && !choice.plot.ends_with(".svg") && !choice.plot.ends_with(".png"))
-        throw Error(choice.plot + ": a figure is written as .svg or .png");
+    if (!choice.plot.empty() && !report::is_figure_file(choice.plot))
+        throw Error(choice.plot.string() + ": a figure is written as .svg, .png or .pdf");
     const ComparedPair pair = analysis::compare_files(settings);
-    if (!choice.plot.empty()) report::write_figure(report::draw_comparison(pair), choice.plot);
+    if (!choice.plot.empty()) save_figure(report::draw_comparison(pair), choice.plot, choice.figure);
     if (!choice.report.empty()) file::write_whole_file(choice.report, report::comparison_page(pair));
     if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
     if (choice.json) {
@@ -132,8 +133,7 @@ int compare_many(const CompareChoice& choice, const analysis::CompareSettings& s
             pairs[i] = analysis::compare_files(one);
             if (choice.plot.empty()) return;
             const fs::path varied = fs::is_directory(settings.output) ? one.output : one.reference;
-            report::write_figure(report::draw_comparison(pairs[i]),
-                                 fs::path(choice.plot) / (varied.filename().string() + ".svg"));
+            save_figure(report::draw_comparison(pairs[i]), choice.plot / (varied.filename().string() + ".svg"), {});
         });
     const VerdictCounts count = count_of(pairs, failures);
     tell_failures(failures);
@@ -168,7 +168,8 @@ Action declare_compare(VerbOptions& verb) {
         .required();
     verb.add("--thresholds", choice->thresholds,
              "TOML file with the thresholds; keys and defaults: docs/reference/tables.md");
-    verb.add("--plot", choice->plot, "a figure, .svg or .png; for folders: a folder of SVG files");
+    verb.add("--plot", choice->plot, "a figure, .svg, .png or .pdf; for folders: a folder of SVG files");
+    add_figure_options(verb, choice->figure);
     verb.add("--band", choice->band,
              "plotted range, Hz (default: 20 Hz to half the sample rate of the slower record, at most 4 kHz); what is "
              "judged stays the same")

@@ -6,11 +6,11 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/analysis/vibration/level_reference.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/command/vibration/waterfall_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/figures/waterfall_figure.hpp"
 
 #include <fmt/format.h>
@@ -32,6 +32,7 @@ struct OrdersChoice : RecordChoice {
     bool peak = false;
     std::vector<std::filesystem::path> waterfalls;
     std::string over, against;  // of waterfalls; empty: orders, time
+    FigureChoice figure;
 };
 
 std::string json_of(const std::string& file, const analysis::Orders& found) {
@@ -122,7 +123,7 @@ void about_file(const std::filesystem::path& file, const Function& function) {
 
 /// By the ending: a figure or a table.
 void write_waterfall(const analysis::Orders& found, const std::filesystem::path& record,
-                     const std::filesystem::path& out) {
+                     const std::filesystem::path& out, const FigureChoice& figure) {
     if (out.extension() == ".csv") {
         file::write_whole_file(out, waterfall_csv(found));
     } else if (out.extension() == ".json") {
@@ -133,7 +134,7 @@ void write_waterfall(const analysis::Orders& found, const std::filesystem::path&
         }
         file::write_whole_file(out, json.dump() + "\n");
     } else {
-        report::write_figure(report::draw_waterfall(found, record), out);
+        save_figure(report::draw_waterfall(found, record), out, figure);
     }
 }
 
@@ -144,9 +145,8 @@ std::optional<analysis::WaterfallSettings> waterfall_of(const OrdersChoice& choi
         return std::nullopt;
     }
     for (const std::filesystem::path& out : choice.waterfalls)
-        if (const auto ending = out.extension();
-            ending != ".svg" && ending != ".png" && ending != ".csv" && ending != ".json")
-            throw Error(fmt::format("{}: a waterfall is written as .svg, .png, .csv or .json", out.string()));
+        if (!report::is_figure_file(out) && out.extension() != ".csv" && out.extension() != ".json")
+            throw Error(fmt::format("{}: a waterfall is written as .svg, .png, .pdf, .csv or .json", out.string()));
     return analysis::WaterfallSettings{choice.over != "frequency", choice.against == "speed"};
 }
 
@@ -160,7 +160,7 @@ int orders(const OrdersChoice& choice) {
     const analysis::Orders found = analysis::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
     for (const std::filesystem::path& out : choice.waterfalls)
-        about_file(file, [&] { write_waterfall(found, file, out); });
+        about_file(file, [&] { write_waterfall(found, file, out, choice.figure); });
     fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found, choice.peak));
     return done;
 }
@@ -179,11 +179,12 @@ Action declare_orders(VerbOptions& verb) {
     verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
     verb.add("--csv", choice->csv, "CSV file for the level over order");
     verb.add("--waterfall", choice->waterfalls,
-             "file for the levels row by row: a figure, .svg or .png, or a table, .csv or .json; repeatable")
+             "file for the levels row by row: a figure, .svg, .png or .pdf, or a table, .csv or .json; repeatable")
         .one_each();
     verb.add("--over", choice->over, "columns of a waterfall: orders (default) or frequency")
         .one_of({"orders", "frequency"});
     verb.add("--against", choice->against, "rows of a waterfall: time (default) or speed").one_of({"time", "speed"});
+    add_figure_options(verb, choice->figure);
     verb.flag("--peak", choice->peak, "peak values instead of rms, in text and CSV");
     return [choice] { return orders(*choice); };
 }

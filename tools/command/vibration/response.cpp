@@ -6,10 +6,10 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/vibration/two_channels.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/figures/response_figure.hpp"
 
 #include <fmt/format.h>
@@ -30,6 +30,7 @@ struct ResponseChoice : RecordChoice {
     std::optional<std::size_t> segment;
     std::optional<double> overlap;
     std::filesystem::path csv, plot, out;
+    FigureChoice figure;
 };
 
 constexpr const char* estimators[] = {"H1", "H2", "Hv"};
@@ -128,7 +129,7 @@ int response(const ResponseChoice& choice) {
     const analysis::TwoChannels found = analysis::analyse_two_channels(file, settings, {});
     if (!choice.csv.empty()) file::write_whole_file(choice.csv, csv_of(found));
     if (!choice.out.empty()) save(found, file.filename().string(), choice.out);
-    if (!choice.plot.empty()) report::write_figure(report::draw_response(found, file), choice.plot);
+    if (!choice.plot.empty()) save_figure(report::draw_response(found, file), choice.plot, choice.figure);
     fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found));
     return done;
 }
@@ -143,7 +144,8 @@ Action declare_response(VerbOptions& verb) {
     verb.add("--overlap", choice->overlap, "overlap as a fraction of a segment (default 0.5)").range(0.0, 0.99);
     verb.add("--csv", choice->csv, "CSV file with H1, H2, Hv and coherence over frequency");
     verb.add("-o,--out", choice->out, "CSV file of the response, as 'measure' writes it, for 'equalise'");
-    verb.add("--plot", choice->plot, "figure, .svg or .png: level, phase and coherence");
+    verb.add("--plot", choice->plot, "figure, .svg, .png or .pdf: level, phase and coherence");
+    add_figure_options(verb, choice->figure);
     return [choice] { return response(*choice); };
 }
 

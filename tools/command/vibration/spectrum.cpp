@@ -3,10 +3,10 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/command/vibration/spectrum_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/figures/html_report.hpp"
 #include "tools/report/figures/spectrum_figure.hpp"
 #include "tools/report/figures/spectrum_page.hpp"
@@ -36,6 +36,7 @@ struct SpectrumChoice : RecordChoice {
     std::optional<double> overlap;
     int orders = 10, jobs = 0;         // files at a time, 0: one per core
     fs::path csv, plot, table, report, cepstrum;
+    FigureChoice figure;
 };
 
 struct Outcome {
@@ -80,9 +81,6 @@ report::PlottedBand plotted_band(const SpectrumChoice& choice) {
     return choice.band.empty() ? report::PlottedBand() : parse_band(choice.band, "--band");
 }
 
-/// Several files go into one figure, unless --plot names a folder.
-bool is_figure(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".png"; }
-
 report::SpectrumMethod method_of(const SpectrumChoice& choice) {
     return {choice.words.window, choice.words.detrend, choice.words.average,         choice.words.scaling,
             choice.envelope,     choice.fundamental,   choice.overlap.value_or(0.5), plotted_band(choice)};
@@ -90,7 +88,8 @@ report::SpectrumMethod method_of(const SpectrumChoice& choice) {
 
 Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
                 const std::function<void(double)>& progress) {
-    const bool overlay = many && is_figure(choice.plot);
+    // Several files go into one figure, unless --plot names a folder.
+    const bool overlay = many && report::is_figure_file(choice.plot);
     analysis::AnalysedFile file = analysis::analyse_file(path, settings_of(choice, overlay), progress);
     const auto output = [&](const fs::path& wanted, const char* ending) {
         return many ? wanted / (path.filename().string() + ending) : wanted;
@@ -98,7 +97,7 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
     if (!choice.csv.empty()) file::write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
     if (!choice.cepstrum.empty()) file::write_whole_file(output(choice.cepstrum, ".csv"), cepstrum_csv(file));
     if (!choice.plot.empty() && !overlay)
-        report::write_figure(report::draw_spectrum(file, plotted_band(choice)), output(choice.plot, ".svg"));
+        save_figure(report::draw_spectrum(file, plotted_band(choice)), output(choice.plot, ".svg"), choice.figure);
     Outcome outcome{choice.json ? analysis_json(file, choice.words) : analysis_text(file, choice.words),
                     analysis_rows(file),
                     choice.report.empty() ? std::string() : report::analysis_section(file, method_of(choice)),
@@ -124,18 +123,19 @@ int spectrum(const SpectrumChoice& choice) {
     plotted_band(choice);
     if (many)
         for (const fs::path& folder : {choice.csv, choice.plot, choice.cepstrum})
-            if (!folder.empty() && !(folder == choice.plot && is_figure(folder))) fs::create_directories(folder);
+            if (!folder.empty() && !(folder == choice.plot && report::is_figure_file(folder)))
+                fs::create_directories(folder);
     std::vector<Outcome> outcomes(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
             outcomes[i] = analyse(files[i], choice, many, progress);
         });
     const bool bad = tell_failures(failures) > 0;
-    if (many && is_figure(choice.plot)) {
+    if (many && report::is_figure_file(choice.plot)) {
         std::vector<analysis::AnalysedFile> drawn;
         for (Outcome& outcome : outcomes)
             if (outcome.drawn) drawn.push_back(std::move(*outcome.drawn));
-        if (!drawn.empty()) report::write_figure(report::draw_overlay(drawn, plotted_band(choice)), choice.plot);
+        if (!drawn.empty()) save_figure(report::draw_overlay(drawn, plotted_band(choice)), choice.plot, choice.figure);
     }
     if (choice.json) print_json(files, outcomes, failures);
     else
@@ -195,7 +195,8 @@ Action declare_spectrum(VerbOptions& verb) {
     const Option only_psd = verb.flag("--psd-only", choice->only_psd, "the spectrum alone, in one pass: --csv, --json");
     verb.add("--csv", choice->csv, "CSV file with frequency and spectrum per channel; for several files: a folder");
     verb.add("--plot", choice->plot,
-             "figure, .svg or .png: several files in one plot; or a folder for a figure of each");
+             "figure, .svg, .png or .pdf: several files in one plot; or a folder for a figure of each");
+    add_figure_options(verb, choice->figure);
     verb.add("--band", choice->band, "plotted range, Hz (default: 20 Hz to half the sample rate)")
         .value_name("LOW:HIGH");
     verb.add("--mark", choice->marks,

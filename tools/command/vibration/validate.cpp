@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/command/vibration/comparison_text.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
@@ -109,8 +110,7 @@ int validate(const ValidateChoice& choice) {
         if (!run.failure.empty()) continue;
         ++(run.pair.verdict.passed() ? count.passed : count.failed);
         if (!choice.plot.empty())
-            report::write_figure(report::draw_comparison(run.pair),
-                                 (choice.plot / (run.file_name() + ".svg")).string());
+            save_figure(report::draw_comparison(run.pair), choice.plot / (run.file_name() + ".svg"), {});
     }
     if (!choice.table.empty()) file::write_whole_file(choice.table, validation_csv(validation));
     if (!choice.report.empty()) file::write_whole_file(choice.report, report::validation_page(validation));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/blocks/report_block.hpp"
 
-#include "tools/report/blocks/picture_html.hpp"
+#include "tools/report/blocks/picture_figure.hpp"
 #include "tools/report/figures/html_report.hpp"
 
 #include <fmt/format.h>
@@ -52,10 +52,14 @@ std::string html_of(const ReportTable& table) {
     return out + "</table>\n";
 }
 
-std::string html_of(const PictureGrid& grid) {
-    std::string out = "<div class=\"two\">\n";
-    for (const render::LabelledPicture& picture : grid.pictures) out += report::html_of(picture);
-    return out + "</div>\n";
+std::string captioned(const display::Figure& figure, const std::string& caption, const std::string& prefix) {
+    return fmt::format("<figure>{}<figcaption class=\"small\">{}</figcaption></figure>\n",
+                       html::drawing(figure, prefix), html::escaped(caption));
+}
+
+std::string html_of(const render::LabelledPicture& picture, const std::string& prefix) {
+    if (picture.image.rgb.empty()) return "<p>All fragments are hidden.</p>\n";
+    return captioned(figure_of(picture), picture.caption, prefix);
 }
 
 }  // namespace
@@ -63,6 +67,7 @@ std::string html_of(const PictureGrid& grid) {
 std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark) {
     std::string out;
     int number = 0;
+    const auto prefix = [&] { return fmt::format("{}{}-", mark, ++number); };
     for (const ReportBlock& block : blocks)
         out += std::visit(
             Visit{[](const Heading& h) {
@@ -72,14 +77,13 @@ std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark) 
                       return fmt::format("<p{}>{}</p>\n", p.is_warning ? fail : "", html::escaped(p.text));
                   },
                   [](const ReportList& l) { return html_of(l); }, [](const ReportTable& t) { return html_of(t); },
-                  [&](const Drawing& d) {
-                      const std::string name =
-                          fmt::format("{}{}", mark, std::string(static_cast<std::size_t>(++number), 'x'));
-                      return fmt::format("<figure>{}<figcaption class=\"small\">{}</figcaption></figure>\n",
-                                         html::drawing(d.figure, name), html::escaped(d.caption));
-                  },
-                  [](const render::LabelledPicture& p) { return report::html_of(p); },
-                  [](const PictureGrid& g) { return html_of(g); }},
+                  [&](const Drawing& d) { return captioned(d.figure, d.caption, prefix()); },
+                  [&](const render::LabelledPicture& p) { return html_of(p, prefix()); },
+                  [&](const PictureGrid& g) {
+                      std::string two = "<div class=\"two\">\n";
+                      for (const render::LabelledPicture& picture : g.pictures) two += html_of(picture, prefix());
+                      return two + "</div>\n";
+                  }},
             block);
     return out;
 }

@@ -51,7 +51,4 @@ using ReportBlock =
 /// HTML of the blocks, for html::page. Drawings get names that begin with `mark` (letters).
 std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark);
 
-/// A PDF file, A4. Text that its standard fonts (WinAnsi) cannot show becomes '?'.
-std::string pdf_of(const std::string& title, std::span<const ReportBlock> blocks);
-
 }  // namespace tactus::report

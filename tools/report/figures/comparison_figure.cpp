@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/figures/comparison_figure.hpp"
 
-#include "assets/file/whole_file.hpp"
-#include "devices/display/png.hpp"
-#include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/report/figures/plot_panel.hpp"
 #include "tools/report/figures/spectrogram_panel.hpp"
@@ -284,12 +281,6 @@ display::Figure draw_comparison(const analysis::ComparedPair& pair) {
     draw_table(figure, c, verdict, left + panel_width + 24.0, top + 10.0);
     if (pictures) draw_pictures(figure, pair, curves + 24.0);
     return figure;
-}
-
-void write_figure(const display::Figure& figure, const std::string& path) {
-    if (path.ends_with(".svg")) file::write_whole_file(path, figure.svg());
-    else if (path.ends_with(".png")) display::write_png(figure.image(), path);
-    else throw Error(path + ": a figure is written as .svg or .png");
 }
 
 }  // namespace tactus::report

@@ -17,11 +17,6 @@ td.n,th.n{text-align:right}
 figure{margin:0}.two{display:grid;grid-template-columns:1fr 1fr;gap:1rem}
 img,svg{max-width:100%;height:auto}.small{color:#6b7280;font-size:13px}.pass{color:#1b7a3d}.fail{color:#b81d24})";
 
-void replace_all(std::string& text, std::string_view what, const std::string& by) {
-    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
-        text.replace(at, what.size(), by);
-}
-
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -36,14 +31,7 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
-std::string drawing(const display::Figure& figure, std::string_view mark) {
-    std::string svg = figure.svg();
-    svg.erase(0, svg.find("<svg"));
-    // Every drawing names its clip paths c0, c1, …
-    replace_all(svg, "id=\"c", fmt::format("id=\"{}c", mark));
-    replace_all(svg, "url(#c", fmt::format("url(#{}c", mark));
-    return svg;
-}
+std::string drawing(const display::Figure& figure, std::string_view mark) { return figure.svg(mark); }
 
 std::string picture(const display::Image& image, std::string_view caption) {
     return fmt::format(

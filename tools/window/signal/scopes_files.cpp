@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scope shows, as a file.
-#include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/report/figures/figure_file.hpp"
 #include "tools/window/signal/scopes.hpp"
 #include "tools/window/signal/table.hpp"
 
@@ -66,7 +66,8 @@ void Scopes::write(std::size_t index, const Feed& feed, const fs::path& path) {
         throw Error(scope.plot.note.empty() ? fmt::format("there are no values of {} yet", scope.port)
                                             : fmt::format("{}: {}", scope.port, scope.plot.note));
     if (path.extension() == ".csv") write_table(scope, feed, path);
-    else display::write_png(figure_of(scope.plot).image(), path.string());
+    else if (const std::string warning = report::write_figure(figure_of(scope.plot), path); !warning.empty())
+        bench_.tell(warning, true);
     std::error_code ignored;
     bench_.tell(fmt::format("wrote {}", (path.has_parent_path() ? path : fs::absolute(path, ignored)).string()));
 }

@@ -6,6 +6,7 @@
 #include "tests/support/skip.hpp"
 #include "tests/support/slicer_markups.hpp"
 #include "tests/tools/command/reconstruction/jaw_case.hpp"
+#include "tests/tools/pdf_text.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -274,15 +275,14 @@ TEST_CASE("a second reconstruction of a plan is an alternative with its own piec
     if (reported.err.find("OpenGL") != std::string::npos) return;
     INFO(reported.err);
     REQUIRE(reported.code == 0);
-    const std::string html = test::slurp(page), bytes = test::slurp(pdf);
+    const std::string html = test::slurp(page);
     for (const char* words : {"Osteotomies of the fibula", "Order of the operation", "Candidates, best first",
                               "Alternatives side by side", "Alternative 'reversed'"})
         CHECK_THAT(html, ContainsSubstring(words));
     CHECK_THAT(html, ContainsSubstring("Segment 2, cut at plane 3 of the jaw"));
-    CHECK(bytes.starts_with("%PDF-1.4"));
-    const std::size_t start = bytes.rfind("startxref\n");
-    REQUIRE(start != std::string::npos);
-    CHECK(bytes.compare(std::stoul(bytes.substr(start + 10)), 4, "xref") == 0);
+    if (const std::optional<std::string> text = test::pdf_text(made.folder, pdf))
+        CHECK_THAT(*text,
+                   ContainsSubstring("Osteotomies of the fibula") && ContainsSubstring("Alternatives side by side"));
 }
 
 TEST_CASE("every exported markup and transform opens by the rules of 3D Slicer with the numbers of the plan",

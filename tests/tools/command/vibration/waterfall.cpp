@@ -138,7 +138,7 @@ TEST_CASE("a waterfall that cannot be made says why") {
     };
     CHECK_THAT(error("--against speed --waterfall w.svg"), ContainsSubstring("the rate hardly changes"));
     CHECK_THAT(error("--against speed"), ContainsSubstring("--waterfall"));
-    CHECK_THAT(error("--waterfall w.pdf"), ContainsSubstring(".svg, .png, .csv or .json"));
+    CHECK_THAT(error("--waterfall w.gif"), ContainsSubstring(".svg, .png, .pdf, .csv or .json"));
     // Above half the sample rate there is nothing, in tables and in figures.
     const RecordOutcome high = folder.tactus("orders steady.wav --rate 70 --orders 80 --json --waterfall w.svg");
     const json row = high.answer()["channels"][0]["waterfall"]["rows"][0]["rms"];
