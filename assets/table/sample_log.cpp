@@ -10,6 +10,7 @@
 #include "assets/table/log_lines.hpp"
 #include "assets/table/log_shape.hpp"
 #include "assets/table/recording.hpp"
+#include "assets/table/repeated_rows.hpp"
 #include "assets/table/time_unit.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
@@ -72,6 +73,7 @@ public:
         check_clocks();
         if (const auto doubt = sign_.doubt()) fail_at(doubt->line, 1, doubt->why);
         if (log_.times.empty()) fail_at(0, 0, "there is no row with a number in every chosen column");
+        if (columns_.time) log_.form.repeated = leave_out_repeated_rows(log_);
         settle_time_unit();
         note_form();
         return std::move(log_);
@@ -487,6 +489,7 @@ std::string describe(const LogForm& form) {
     text += fmt::format(", first row in line {}", form.first_row);
     if (form.skipped > 0) text += fmt::format(" ({} lines not used)", form.skipped);
     if (form.trailer > 0) text += fmt::format(", {} lines of statistics at the end", form.trailer);
+    if (form.repeated > 0) text += fmt::format(", {} rows that repeat the row before left out", form.repeated);
     return text + "; time: " + form.time;
 }
 

@@ -32,6 +32,7 @@ struct LogForm {
     int header_line = 0, units_line = 0, first_row = 0;  ///< lines from 1; 0: none
     int skipped = 0;         ///< lines above the rows that were not used, without comments
     int trailer = 0;         ///< lines with statistics below the rows
+    std::size_t repeated = 0;  ///< rows that stated the row before once more and were left out
     std::string time;        ///< "column 't' in ms", "clock times in column 'Time'", "--rate, 3200 Hz"
     bool is_time_unit_stated = true;  ///< by an option, a name or the cells; false: the only plausible one
 

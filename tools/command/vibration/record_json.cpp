@@ -17,6 +17,7 @@ Json log_json(const sound::LogFacts& log, double rate) {
     const auto line = [](int number) { return number > 0 ? Json(number) : Json(); };
     return {{"rows", log.rows},
             {"lost_rows", log.lost_rows},
+            {"repeated_rows", log.form.repeated},
             {"gaps", log.gaps},
             {"lost_s", log.lost_seconds},
             {"step_s", {log.shortest_step, log.longest_step}},
