@@ -116,6 +116,16 @@ TEST_CASE("times that a coarse clock rounded are even, in every ratio of rate an
         }
 }
 
+TEST_CASE("a clock that counts few steps in a record is refused, because the rate would be wrong") {
+    const auto at_kilohertz = [](int count) {
+        std::vector<double> times, values;
+        for (int i = 0; i < count; ++i) times.push_back(std::floor(i / 1000.0)), values.push_back(wave(i / 1000.0));
+        return signal::regularise(times, Channels{values});
+    };
+    CHECK_THROWS_WITH(at_kilohertz(8000), Catch::Matchers::ContainsSubstring("steps of 1 s, and 7 of them"));
+    CHECK(at_kilohertz(60000).rate == Approx(1000.0).epsilon(1e-3));
+}
+
 TEST_CASE("a piece of any length between two gaps has the rate of the others under a coarse clock") {
     for (int count = 1; count <= 12; ++count) {
         CAPTURE(count);
