@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
+#include <utility>
 
 namespace tactus::edit {
 
@@ -220,6 +222,43 @@ std::string without_wire(std::string_view text, std::string_view to, std::string
     }
     if (!from.empty()) throw Error(fmt::format("no wire leads from '{}' to '{}'", from, to));
     throw Error(fmt::format("no wire leads to '{}'", to));
+}
+
+namespace {
+
+/// Bounds of a line without its end; npos, npos: there is none.
+std::pair<std::size_t, std::size_t> bounds_of(std::string_view text, int line) {
+    constexpr std::size_t none = std::string_view::npos;
+    std::size_t begin = line < 1 ? none : 0;
+    for (int at = 1; at < line && begin != none; ++at)
+        if (begin = text.find('\n', begin); begin != none) ++begin;
+    if (begin == none || (begin == text.size() && begin > 0)) return {none, none};
+    std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end > begin && text[end - 1] == '\r') --end;
+    return {begin, end};
+}
+
+}  // namespace
+
+std::string line_of(std::string_view text, int line) {
+    const auto [begin, end] = bounds_of(text, line);
+    return begin == std::string_view::npos ? std::string() : std::string(text.substr(begin, end - begin));
+}
+
+std::string with_line(std::string_view text, int line, const std::optional<std::string>& by) {
+    const auto [begin, end] = bounds_of(text, line);
+    if (begin == std::string_view::npos) throw Error(fmt::format("the patch has no line {}", line));
+    const std::size_t next = std::min(text.find('\n', end), text.size() - 1) + 1;
+    return std::string(text.substr(0, begin)) + by.value_or("") + std::string(text.substr(by ? end : next));
+}
+
+std::size_t find_word(std::string_view line, std::string_view word) {
+    const auto is_letter = [&](std::size_t at) {
+        return at < line.size() && (std::isalnum(static_cast<unsigned char>(line[at])) || line[at] == '_');
+    };
+    for (std::size_t at = 0; (at = line.find(word, at)) != std::string_view::npos; ++at)
+        if (!word.empty() && !(at > 0 && is_letter(at - 1)) && !is_letter(at + word.size())) return at;
+    return std::string_view::npos;
 }
 
 }  // namespace tactus::edit

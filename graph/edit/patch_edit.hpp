@@ -4,6 +4,8 @@
 // result compiles; PatchEditor does. All throw Error if the named item does not exist.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,5 +44,12 @@ enum class InputTakes { one_wire, many_wires };
 std::string with_wire(std::string_view text, const WireText& wire, InputTakes takes = InputTakes::one_wire);
 /// Removes the wire to an input such as "saw.load"; if `from` is given, only the wire from there.
 std::string without_wire(std::string_view text, std::string_view to, std::string_view from = {});
+
+/// A line of the text without its end, counted from 1; empty: there is none.
+std::string line_of(std::string_view text, int line);
+/// Replaces a line, or removes it if `by` is empty. The text need not read as a patch: this is how it is repaired.
+std::string with_line(std::string_view text, int line, const std::optional<std::string>& by);
+/// Offset of a name in a line that is not part of a longer one; npos: it is not there.
+std::size_t find_word(std::string_view line, std::string_view word);
 
 }  // namespace tactus::edit

@@ -115,12 +115,14 @@ void Person::double_click(double x, double y) {
 }
 
 void Person::type(const std::string& text) {
-    static const std::string shifted = "_:ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    static const std::string shifted = "_:\">ABCDEFGHIJKLMNOPQRSTUVWXYZ";
     for (const char c : text) {
         std::string name(1, static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
         if (c == ' ') name = "space";
         if (c == '_' || c == '-') name = "minus";
-        if (c == '.') name = "period";
+        if (c == '.' || c == '>') name = "period";
+        if (c == ',') name = "comma";
+        if (c == '"') name = "apostrophe";
         if (c == '/') name = "slash";
         if (c == ':') name = "semicolon";
         const bool is_shifted = shifted.find(c) != std::string::npos;

@@ -33,7 +33,7 @@ public:
     /// With modifiers held: "Control_L", "Shift_L".
     void chord(const std::vector<std::string>& modifiers, const std::string& name);
     void double_click(double x, double y);
-    /// Letters, digits, blanks and "_-./:" as a keyboard of the United States has them.
+    /// Letters, digits, blanks and _-./:,>" as a keyboard of the United States has them.
     void type(const std::string& text);
     static void wait(double seconds);
 

@@ -31,7 +31,8 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memo
       slices_(bench, scene_, plan_.case_run(), memory),
       train_(bench),
       memory_(memory),
-      start_page_(memory) {
+      start_page_(memory),
+      faults_(bench) {
     patch_.is_read_only = nodes_.is_read_only = take != nullptr;
     if (take) {
         const std::filesystem::path& folder = take->take().folder;
@@ -101,6 +102,15 @@ void Desk::show_messages(double height) {
     ImGui::EndChild();
 }
 
+void Desk::draw_faults(double height, double gap) {
+    const std::string node = faults_.draw(height, fonts_);
+    ImGui::Dummy(vec({1.0, gap}));
+    if (node.empty()) return;
+    if (!shows(columns_, Panel::patch)) use_layout(Layout::patch);
+    patch_.choose_only(node);
+    patch_.look_at(node);
+}
+
 void Desk::shortcuts() {
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
     const bool is_typing = ImGui::GetIO().WantTextInput;
@@ -158,7 +168,9 @@ void Desk::draw() {
     run_bar(bench_, *bench_.status(), take_, edit_buttons(), fonts_);
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
-    const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
+    const double room = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
+    const double errors = take_ ? 0.0 : faults_.height(room, fonts_);
+    const double height = room - (errors > 0.0 ? errors + gap : 0.0);
     // Three slices and a scene need more than a small window has.
     slices_.propose(height > 620.0 * fonts_.scale);
     arrange(width);
@@ -179,6 +191,7 @@ void Desk::draw() {
     keep_borders();
     if (!shows(columns_, Panel::slices)) slices_.rest();
     ImGui::Dummy(vec({1.0, gap}));
+    if (errors > 0.0) draw_faults(errors, gap);
     show_messages(messages);
     ask_farewell();
     if (!take_) plan_.draw_questions();

@@ -2,6 +2,7 @@
 // The layout of the window: all panels.
 #pragma once
 
+#include "tools/window/desk/fault_list.hpp"
 #include "tools/window/desk/questions.hpp"
 #include "tools/window/desk/run_bar.hpp"
 #include "tools/window/desk/take_bench.hpp"
@@ -111,6 +112,7 @@ private:
     void draw_slices(double height);
     void draw_task(double height);
     void show_messages(double height);
+    void draw_faults(double height, double gap);
     void ask_farewell();
     void shortcuts();
     std::vector<Command> make_commands();
@@ -167,6 +169,7 @@ private:
     std::set<std::string> looked_at_;
     WindowMemory& memory_;
     StartPage start_page_;
+    FaultList faults_;
     FileDialog dialog_;
     ImportDialog import_;
     CommandList list_;

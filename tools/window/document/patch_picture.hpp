@@ -22,6 +22,7 @@ struct PicturePort {
     bool is_param = false;  ///< a driven parameter
     Point at;
     bool takes_many = false;  ///< any number of wires: an input of events
+    bool is_missing = false;  ///< a wire names it, and the node has no such port
 };
 
 struct PictureNode {
@@ -33,6 +34,7 @@ struct PictureNode {
     bool is_part = false;   ///< a closed sub-patch
     std::string lacks;      ///< why it is unfinished; empty: it is not
     std::string colour;     ///< a name; empty: none
+    bool is_at_fault = false;  ///< it cannot be made: `lacks` is an error
 };
 
 struct PictureComment {
@@ -53,6 +55,7 @@ struct PictureWire {
     bool crosses = false;  ///< leads from one group to another
     std::vector<BezierCurve> way;  ///< consecutive pieces
     Box bounds;
+    std::string fault;  ///< why it cannot be made; empty: it is
 };
 
 struct PictureLane {

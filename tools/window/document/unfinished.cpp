@@ -14,6 +14,13 @@ namespace tactus::window {
 
 namespace {
 
+template <class Item>
+std::vector<std::string> names_of(const std::vector<Item>& items) {
+    std::vector<std::string> names;
+    for (const Item& item : items) names.push_back(item.name);
+    return names;
+}
+
 using Nodes = std::unordered_map<std::string_view, const patch::PatchNode*>;
 
 /// A file that a node lacks; empty: none.
@@ -26,7 +33,8 @@ std::string lacking_file(const patch::PatchNode& node, const TypePorts& ports) {
 
 class Finder {
 public:
-    Finder(const patch::Patch& patch, patch::Problems& problems) : patch_(patch), problems_(problems) {
+    Finder(const patch::Patch& patch, patch::Problems& problems, const std::map<std::string, std::string>& at_fault)
+        : patch_(patch), problems_(problems), at_fault_(at_fault) {
         for (const patch::PatchNode& node : patch.nodes) nodes_.emplace(node.name, &node);
         made_.parts = part_ports_of(patch);
     }
@@ -66,6 +74,7 @@ private:
             if (lacks_.emplace(node, std::move(what)).second) next.push_back(node);
         };
         for (const patch::PatchNode& node : patch_.nodes) {
+            if (const auto fault = at_fault_.find(node.name); fault != at_fault_.end()) lack(node.name, fault->second);
             const TypePorts* ports = ports_of(node);
             if (!ports) continue;
             for (const PicturePort& port : ports->inputs)
@@ -88,8 +97,13 @@ private:
         for (const patch::PatchNode& node : patch_.nodes) {
             const auto found = lacks_.find(node.name);
             if (found == lacks_.end()) continue;
-            UnfinishedNode made{node.name, node.type, node.group.empty() ? node.rate : node.group,
-                                {},        {},        found->second};
+            UnfinishedNode made{node.name,
+                                node.type,
+                                node.group.empty() ? node.rate : node.group,
+                                {},
+                                {},
+                                found->second,
+                                at_fault_.contains(node.name)};
             if (const auto part = made_.parts.find(node.type); made.lane.empty() && part != made_.parts.end())
                 made.lane = part->second.lane;
             if (const TypePorts* ports = ports_of(node)) made.inputs = ports->inputs, made.outputs = ports->outputs;
@@ -114,19 +128,23 @@ private:
 
     void check(const patch::PatchWire& wire) {
         for (const std::string* name : {&wire.to_node, wire.from_port.empty() ? nullptr : &wire.from_node})
-            if (name && !nodes_.contains(*name)) return problems_.add(wire.where, fmt::format("no node '{}'", *name));
+            if (name && !nodes_.contains(*name))
+                return problems_.add(wire.where,
+                                     fmt::format("no node '{}'{}", *name, did_you_mean(*name, names_of(patch_.nodes))));
         const PicturePort *from = port(wire.from_node, wire.from_port, false),
                           *to = port(wire.to_node, wire.to_port, true);
         const TypePorts* target = ports_of(wire.to_node);
         if (!wire.from_port.empty() && !from && ports_of(wire.from_node))
-            return problems_.add(wire.where,
-                                 fmt::format("no output '{}' on node '{}'", wire.from_port, wire.from_node));
+            return problems_.add(
+                wire.where, fmt::format("no output '{}' on node '{}'{}", wire.from_port, wire.from_node,
+                                        did_you_mean(wire.from_port, names_of(ports_of(wire.from_node)->outputs))));
         if (target && !to) {
             const auto& params = target->params;
             const bool drives =
                 std::ranges::find(params, wire.to_port, &std::pair<std::string, std::string>::first) != params.end();
             if (!drives)
-                return problems_.add(wire.where, fmt::format("no input '{}' on node '{}'", wire.to_port, wire.to_node));
+                return problems_.add(wire.where, fmt::format("no input '{}' on node '{}'{}", wire.to_port, wire.to_node,
+                                                             did_you_mean(wire.to_port, names_of(target->inputs))));
             if (from && from->type && from->type != &value::number)
                 return problems_.add(
                     wire.where, fmt::format("'{}.{}' gives {}, but the parameter '{}' takes a number", wire.from_node,
@@ -143,6 +161,7 @@ private:
 
     const patch::Patch& patch_;
     patch::Problems& problems_;
+    const std::map<std::string, std::string>& at_fault_;
     Nodes nodes_;
     std::map<std::string, std::string> lacks_;
     std::set<std::string> fed_;
@@ -162,8 +181,9 @@ std::vector<std::string> Unfinished::names() const {
     return all;
 }
 
-Unfinished unfinished_of(const patch::Patch& patch, patch::Problems& problems) {
-    return Finder(patch, problems).find();
+Unfinished unfinished_of(const patch::Patch& patch, patch::Problems& problems,
+                         const std::map<std::string, std::string>& at_fault) {
+    return Finder(patch, problems, at_fault).find();
 }
 
 }  // namespace tactus::window

@@ -37,10 +37,11 @@ std::string_view without_mark(std::string_view text) {
 Workbench::Workbench(const RunChoice& choice) : choice_(choice) {
     const fs::path file = run::file_of(choice);
     editor_ = std::make_unique<edit::PatchEditor>(choice.text ? *choice.text : file::read_whole_file(file), file,
-                                                  [this](std::string_view text) { return check(text); });
+                                                  [this](std::string_view text) { return refusal(text); });
     choice_.text.reset();
-    if (const auto problem = check(editor_->text())) tell(*problem, true);
+    check(editor_->text());
     adopt();
+    tell_faults();
     tell_unfinished();
     last_take_ = choice.record;
 }
@@ -64,29 +65,24 @@ void Workbench::tell(std::string text, bool is_problem) {
     if (messages_.size() > max_messages) messages_.pop_front();
 }
 
+std::optional<std::string> Workbench::Judged::problem() const {
+    if (faults.empty()) return std::nullopt;
+    return faults.front().text;
+}
+
 Workbench::Judged Workbench::judge(std::string_view text) const {
-    Judged judged;
-    patch::Problems problems;
     const fs::path file = editor_ ? editor_->file() : run::file_of(choice_);
+    Judged judged;
     judged.running = without_mark(text);
-    judged.written = patch::read_patch(judged.running, file, problems);
-    const auto is_blank = [&] {
-        return judged.written.nodes.empty() && problems.list.size() == 1 &&
-               problems.list.front().message().starts_with("the patch has no nodes");
-    };
-    if (is_blank()) return judged;
-    if (problems.empty()) judged.unfinished = unfinished_of(judged.written, problems);
-    patch::Patch runs = judged.written;
-    if (problems.empty() && !judged.unfinished.empty()) {
-        judged.running = edit::without_nodes(judged.running, judged.unfinished.names());
-        runs = patch::read_patch(judged.running, file, problems);
-        if (runs.nodes.empty()) return judged;
-    }
-    std::optional<compile::Schedule> plan;
-    if (problems.empty()) plan = plan_of(std::move(runs), choice_.overrides, choice_.seed, nullptr, problems);
-    if (!problems.empty()) judged.problem = problems.list.front().what();
-    else if (!plan) judged.problem = "the patch does not compile";
-    else judged.plan = std::make_unique<compile::Schedule>(std::move(*plan));
+    Anatomy parts = anatomy_of(judged.running, file, [this](patch::Patch patch, patch::Problems& problems) {
+        return plan_of(std::move(patch), choice_.overrides, choice_.seed, nullptr, problems);
+    });
+    if (parts.faults.empty() && !parts.unfinished.empty())
+        judged.running = edit::without_nodes(judged.running, parts.unfinished.names());
+    judged.written = std::move(parts.written);
+    judged.unfinished = std::move(parts.unfinished);
+    judged.plan = std::move(parts.plan);
+    judged.faults = std::move(parts.faults);
     return judged;
 }
 
@@ -95,15 +91,27 @@ std::optional<std::string> Workbench::check(std::string_view text) {
         checked_ = judge(text);
     } catch (const Error& error) {
         checked_ = {};
-        checked_.problem = error.what();
+        checked_.faults.push_back({error.what(), error.message(), 0, {}, {}, {}, {}, {}, {}});
     }
-    if (checked_.problem.empty()) return std::nullopt;
-    return checked_.problem;
+    return checked_.problem();
+}
+
+/// Why an edit is refused; nothing: it is not. A patch with errors is repaired one by one, and a repair may bring to
+/// light what the compiler could not see before.
+std::optional<std::string> Workbench::refusal(std::string_view text) {
+    if (const auto problem = check(text); !problem || faults_.empty()) return problem;
+    const auto has = [](const std::vector<Fault>& all, const Fault& fault) {
+        return std::ranges::find(all, fault.message, &Fault::message) != all.end();
+    };
+    const bool repairs = std::ranges::any_of(faults_, [&](const Fault& f) { return !has(checked_.faults, f); });
+    const auto added = std::ranges::find_if(checked_.faults, [&](const Fault& f) { return !has(faults_, f); });
+    if (repairs || added == checked_.faults.end()) return std::nullopt;
+    return added->text;
 }
 
 /// Shows the plan that was checked last.
 void Workbench::adopt() {
-    is_broken_ = !checked_.problem.empty();
+    faults_ = std::move(checked_.faults);
     plan_ = std::move(checked_.plan);
     written_ = std::move(checked_.written);
     unfinished_ = std::move(checked_.unfinished);
@@ -113,12 +121,20 @@ void Workbench::adopt() {
     PictureMatter matter{plan_.get(), &unfinished_, &window_, {}};
     for (const patch::PatchNode& node : written_.nodes)
         if (patch::is_sub_patch(node)) matter.parts.emplace_back(node.name, node.type);
-    picture_ = is_broken_ ? PatchPicture{} : picture_of(matter);
+    picture_ = picture_of(matter);
     ++plan_version_;
 }
 
+void Workbench::tell_faults() {
+    if (faults_.empty()) return;
+    tell(fmt::format("{}{}", faults_.front().text,
+                     faults_.size() == 1 ? "" : fmt::format("; {} errors in all", faults_.size())),
+         true);
+}
+
 void Workbench::tell_unfinished() {
-    if (unfinished_.empty()) return;
+    // The list of errors says why.
+    if (unfinished_.empty() || is_broken()) return;
     const UnfinishedNode& first = unfinished_.nodes.front();
     const std::size_t others = unfinished_.nodes.size() - 1;
     tell(fmt::format("{} does not run yet: {}{}", first.name, first.lacks,
@@ -127,14 +143,15 @@ void Workbench::tell_unfinished() {
 
 /// Handles a text changed by undo, or saved by another program.
 void Workbench::adopt_text() {
-    if (const auto problem = check(editor_->text())) tell(*problem, true);
+    check(editor_->text());
     adopt();
+    tell_faults();
     follow();
 }
 
 /// Applies the current text to the run, unless it does not compile.
 void Workbench::follow() {
-    if (!run_ || !plan_) return;
+    if (!run_ || !plan_ || is_broken()) return;
     const PatchChange change = followed_ ? change_between(*followed_, *plan_) : PatchChange{{}, true};
     for (const PatchChange::Setting& s : change.settings) run_->set(s.node, s.param, s.value);
     if (change.needs_edit) run_->edit(running_text_);
@@ -143,6 +160,7 @@ void Workbench::follow() {
 
 bool Workbench::edit(const edit::PatchEditor::Edit& how, std::string done) {
     const std::int64_t version = editor_->version();
+    const std::size_t faults = faults_.size();
     if (const auto problem = editor_->apply(how)) {
         tell(*problem, true);
         return false;
@@ -151,6 +169,7 @@ bool Workbench::edit(const edit::PatchEditor::Edit& how, std::string done) {
     adopt();
     follow();
     tell(std::move(done));
+    if (faults > 0 && faults_.empty()) tell("no errors are left; the patch can run");
     tell_unfinished();
     return true;
 }
@@ -178,6 +197,24 @@ bool Workbench::reset(const std::string& node, const std::string& param) {
     const auto [owner, name] = owner_of(*this, node, param);
     return edit([&](std::string_view text) { return edit::without_setting(text, owner, name); },
                 fmt::format("{}.{} has its default", owner, name));
+}
+
+std::string Workbench::line(int number) const { return edit::line_of(editor_->text(), number); }
+
+bool Workbench::replace_line(int number, const std::optional<std::string>& by) {
+    return edit([&](std::string_view text) { return edit::with_line(text, number, by); },
+                fmt::format("line {} {}", number, by ? "is changed" : "is removed"));
+}
+
+bool Workbench::correct(const Fault& fault) {
+    return edit(
+        [&](std::string_view text) {
+            std::string here = edit::line_of(text, fault.line);
+            const std::size_t at = edit::find_word(here, fault.wrong);
+            if (at == std::string::npos) throw Error(fmt::format("'{}' is not in line {}", fault.wrong, fault.line));
+            return edit::with_line(text, fault.line, here.replace(at, fault.wrong.size(), fault.suggestion));
+        },
+        fmt::format("'{}' is now '{}'", fault.wrong, fault.suggestion));
 }
 
 bool Workbench::cut_at(const Vec3& site) {
@@ -242,7 +279,7 @@ bool Workbench::redo() {
 
 void Workbench::check_saved() {
     const Judged saved = judge(file::read_whole_file(editor_->file()));
-    if (!saved.problem.empty()) throw Error(saved.problem);
+    if (const auto problem = saved.problem()) throw Error(*problem);
     const PatchChange change = plan_ && saved.plan ? change_between(*plan_, *saved.plan) : PatchChange{{}, true};
     if (change.needs_edit || !change.settings.empty())
         throw Error(fmt::format("{}: the saved file compiles to a different plan than the one shown",
@@ -255,7 +292,7 @@ void Workbench::turn(const std::string& node, const std::string& param, const st
 
 void Workbench::run() {
     if (run_ && !run_->is_over()) return;
-    if (!plan_ && !is_broken_) return tell("nothing runs yet: add nodes and give them their wires", true);
+    if (!plan_ && !is_broken()) return tell("nothing runs yet: add nodes and give them their wires", true);
     try {
         if (const auto asset = asset_for_run && !next_goes_on_ ? asset_for_run() : std::nullopt)
             use_asset(asset->first, asset->second);
@@ -272,8 +309,8 @@ void Workbench::run() {
     choice.keeps_journal = true;
     choice.is_further = choice.is_further || runs_ > 1;
     has_take_ = !choice.record.empty();
-    // A text that does not compile says so from its file.
-    if (plan_) choice.text = running_text_;
+    // A text that does not compile is reported by the run.
+    if (plan_ && !is_broken()) choice.text = running_text_;
     run_ = std::make_unique<ViewedRun>(choice, assets_, *observer_);
     // The next run makes another take.
     choice_.record.clear();

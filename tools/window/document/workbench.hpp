@@ -8,6 +8,7 @@
 #include "graph/edit/patch_edit.hpp"
 #include "graph/edit/patch_editor.hpp"
 #include "tools/run/run_choice.hpp"
+#include "tools/window/document/faults.hpp"
 #include "tools/window/document/kept_edits.hpp"
 #include "tools/window/document/patch_picture.hpp"
 #include "tools/window/document/unfinished.hpp"
@@ -45,10 +46,12 @@ public:
     bool is_untitled() const;
 
     const edit::PatchEditor& editor() const { return *editor_; }
-    /// The plan of all that is finished; null when nothing is, or when the text does not compile, which happens only for
-    /// files saved by other programs.
+    /// The plan of all that is finished and without errors; null when nothing is.
     const compile::Schedule* plan() const { return plan_.get(); }
-    bool is_broken() const { return is_broken_; }
+    /// The errors of the text. A patch that has some does not run, and an edit of it is refused only when it adds
+    /// errors and repairs none. For a file with errors that is opened, or saved by another program.
+    const std::vector<Fault>& faults() const { return faults_; }
+    bool is_broken() const { return !faults_.empty(); }
     const Unfinished& unfinished() const { return unfinished_; }
     const patch::PatchWindow& window() const { return window_; }
     /// The nodes as written, with sub-patches as one.
@@ -79,6 +82,12 @@ public:
     bool reconnect(const std::string& from, const std::string& old_to, const std::string& to);
     /// The same at its source: the wire to `to` comes from another output.
     bool reconnect_source(const std::string& old_from, const std::string& from, const std::string& to);
+    /// A line of the text, from 1; empty: there is none.
+    std::string line(int number) const;
+    /// Replaces a line of the text, or removes it where nothing is given.
+    bool replace_line(int number, const std::optional<std::string>& by);
+    /// Writes the proposed name in place of the wrong one.
+    bool correct(const Fault& fault);
     /// Moves the saw's site to a point of the bone (scene, m), along the surface's normal, as one edit. Refused for a
     /// patch without a bone to saw.
     bool cut_at(const Vec3& site);
@@ -250,10 +259,14 @@ private:
         Unfinished unfinished;
         std::string running;  ///< the text without what is unfinished
         std::unique_ptr<compile::Schedule> plan;
-        std::string problem;  ///< empty: none
+        std::vector<Fault> faults;
+        /// The first error, as the command line reports it; none: there is no error.
+        std::optional<std::string> problem() const;
     };
     Judged judge(std::string_view text) const;
     std::optional<std::string> check(std::string_view text);
+    std::optional<std::string> refusal(std::string_view text);
+    void tell_faults();
     void tell_unfinished();
     void adopt();
     void adopt_text();
@@ -282,7 +295,7 @@ private:
     Unfinished unfinished_;
     patch::PatchWindow window_;
     std::string running_text_, last_added_;
-    bool is_broken_ = false;
+    std::vector<Fault> faults_;
     bool was_never_saved_ = false;  // a new patch: a file of its name is another window's
     std::optional<bool> wanted_hand_;
     std::optional<std::pair<std::string, std::filesystem::path>> otherwise_;  // an asset and its file

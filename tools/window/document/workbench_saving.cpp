@@ -242,10 +242,15 @@ void Workbench::look_at_file() {
     looked_ = now;
     std::vector<fs::path> files;
     if (!was_never_saved_) files.push_back(editor_->file());
-    if (plan_)
+    if (plan_ && !is_broken()) {
         for (const fs::path& part : patch::part_files(plan_->patch)) files.push_back(part);
-    else  // a sub-patch that is wrong may be mended
+    } else {
+        // A sub-patch that is wrong may be mended.
         for (const auto& [file, when] : written_at_) files.push_back(file);
+        for (const patch::PatchNode& node : written_.nodes)
+            if (patch::is_sub_patch(node))
+                files.push_back(patch::file_of_part(written_, patch::part_path("", node.type)));
+    }
     WrittenAt now_written;
     bool is_saved = written_at_.empty(), is_part_saved = false;
     for (const fs::path& file : files) {
@@ -288,7 +293,7 @@ void Workbench::take_over_file() {
         const bool is_new = !was_never_saved_ && editor_->reload();
         if (is_new && !mine.empty()) keep_beside(mine);
         // A sub-patch may have been saved instead.
-        const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
+        const bool is_known = !is_new && plan_ && !is_broken() && (plan_->patch.parts.empty() || has_same_parts());
         if (is_known) return;
         tell(is_new ? "the file was saved by another program; its text is used now"
                     : "a sub-patch was saved by another program; it is used now");

@@ -242,8 +242,8 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     if (type != nodes::catalogue().end()) dim(std::string((*type)->about));
     else if (!node.type.empty()) dim(node.type);
     if (!node.lacks.empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
-        ImGui::TextWrapped("Does not run yet: %s.", node.lacks.c_str());
+        ImGui::PushStyleColor(ImGuiCol_Text, node.is_at_fault ? tone::bad : tone::warm);
+        ImGui::TextWrapped(node.is_at_fault ? "Cannot be made: %s." : "Does not run yet: %s.", node.lacks.c_str());
         ImGui::PopStyleColor();
     }
     const auto status = bench_.status();

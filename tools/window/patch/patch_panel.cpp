@@ -167,8 +167,6 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     draw_minimap(paint);
     if (picture.nodes.empty() && !bench_.is_broken() && !is_read_only)
         paint.text(corner_ + Point{24, 24}, text_size * unit_, tone::dim, "Double-click, or press Tab, to add a node");
-    if (bench_.is_broken())
-        paint.text(corner_ + Point{16, 14}, text_size * unit_, tone::bad, "the patch does not compile; see below");
     paint.list()->PopClipRect();
     if (ImGui::IsItemHovered() && dragging_.what == Dragging::What::nothing) explain(hovered_);
     menus();
@@ -236,7 +234,8 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
     const double z = canvas_.zoom;
     const Box box = screen(node.box);
     const bool is_chosen = chosen.contains(node.name);
-    const ImU32 edge = is_chosen ? tone::chosen : node.lacks.empty() ? tone::node_edge : tone::warm;
+    const ImU32 flaw = node.is_at_fault ? tone::bad : tone::warm;
+    const ImU32 edge = is_chosen ? tone::chosen : node.lacks.empty() ? tone::node_edge : flaw;
     if (box.height() < smallest_box) return paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
     const auto large = letters(text_size, title_height - 6.0), small = letters(small_size, 16.0);
     const ImU32 head_ink = node.colour.empty() ? tone::node_head : colour_named(node.colour);
@@ -267,7 +266,7 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
     paint.text({box.left + 8.0 * z, title_top}, *large, tone::text, paint.shortened(node.name, *large, room, true),
                true);
     if (small)
-        paint.text({box.left + 8.0 * z, box.top + 17.5 * z}, *small, node.lacks.empty() ? tone::dim : tone::warm,
+        paint.text({box.left + 8.0 * z, box.top + 17.5 * z}, *small, node.lacks.empty() ? tone::dim : flaw,
                    paint.shortened(node.lacks.empty() ? node.type : node.lacks, *small, node_width * z - 14.0 * z));
     draw_ports(paint, node, feed, looked_at);
 }
@@ -289,7 +288,7 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
     for (const PicturePort& port : node.inputs) {
         const Point at = screen(port.at);
         const bool suits = wanted && (!port.type || port.type == wanted);
-        const ImU32 ink = colour_of(port.type);
+        const ImU32 ink = port.is_missing ? tone::bad : colour_of(port.type);
         if (suits) paint.dot(at, 8.0 * z, faded(ink, 0.35));
         paint.dot(at, 4.0 * z, ink);
         if (!port.is_connected) paint.dot(at, 2.4 * z, tone::node);
@@ -299,7 +298,7 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
     }
     for (const PicturePort& port : node.outputs) {
         const Point at = screen(port.at);
-        const ImU32 ink = colour_of(port.type);
+        const ImU32 ink = port.is_missing ? tone::bad : colour_of(port.type);
         if (wanted_source && (!port.type || port.type == wanted_source)) paint.dot(at, 8.0 * z, faded(ink, 0.35));
         paint.dot(at, 4.0 * z, ink);
         if (!port.is_connected) paint.dot(at, 2.4 * z, tone::node);

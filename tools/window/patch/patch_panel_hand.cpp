@@ -177,7 +177,8 @@ void PatchPanel::explain(const Hit& over) {
         const PicturePort& output = from.outputs[static_cast<std::size_t>(wire.output)];
         show_tooltip(fmt::format("{}.{} -> {}.{}\n{}, {}", from.name, output.name, to.name,
                                  to.inputs[static_cast<std::size_t>(wire.input)].name,
-                                 output.type ? std::string(output.type->name) : "any", describe(wire)));
+                                 output.type ? std::string(output.type->name) : "any",
+                                 wire.fault.empty() ? describe(wire) : wire.fault));
     } else if (over.what == Hit::What::input || over.what == Hit::What::output) {
         const PictureNode& node = picture.nodes[static_cast<std::size_t>(over.index)];
         const PicturePort& port =

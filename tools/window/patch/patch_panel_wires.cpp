@@ -32,7 +32,8 @@ void PatchPanel::draw_wires(const Painter& paint, const Box& visible) {
         const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
         ImU32 ink = colour_of(from.outputs[static_cast<std::size_t>(wire.output)].type);
         const bool is_hovered = hovered_ == Hit{Hit::What::wire, static_cast<int>(w), -1};
-        if (!is_hovered && !is_near) ink = faded(ink, 0.62);
+        if (!wire.fault.empty()) ink = tone::bad;
+        else if (!is_hovered && !is_near) ink = faded(ink, 0.62);
         // Whole pixels: fractional widths need three times as many triangles.
         const double width = std::max(1.0, std::round((is_hovered ? 3.2 : is_near ? 2.4 : 1.7) * std::max(z, 0.35)));
         for (const BezierCurve& piece : wire.way)

@@ -221,7 +221,7 @@ private:
         if (is_part(to) || is_part(from))
             for (const PictureWire& w : picture_.wires)
                 if (w.from == from && w.output == output && w.to == to && w.input == input) return;
-        picture_.wires.push_back({from, output, to, input, mode, latency, crosses, {}, {}});
+        picture_.wires.push_back({from, output, to, input, mode, latency, crosses, {}, {}, {}});
     }
 
     int lane_named(const std::string& name) {
@@ -240,25 +240,34 @@ private:
             made.inputs = node.inputs;
             made.outputs = node.outputs;
             made.lacks = node.lacks;
+            made.is_at_fault = node.is_at_fault;
             const int lane = lane_named(node.lane);
             made.group = lane;
             orders_[static_cast<std::size_t>(lane)].push_back(static_cast<int>(picture_.nodes.size()) - 1);
         }
-        for (const patch::PatchWire& wire : matter_.unfinished->wires) {
-            const int to = picture_.find(wire.to_node),
-                      from = wire.from_port.empty() ? -1 : picture_.find(wire.from_node);
-            if (to < 0) continue;
-            PictureNode& target = picture_.nodes[static_cast<std::size_t>(to)];
-            const int input =
-                port_named(target.inputs, wire.to_port, {wire.to_port, "", "", &value::number, true, true, true, {}});
-            target.inputs[static_cast<std::size_t>(input)].is_connected = true;
-            if (from < 0) continue;
-            PictureNode& source = picture_.nodes[static_cast<std::size_t>(from)];
-            const int output =
-                port_named(source.outputs, wire.from_port, {wire.from_port, "", "", nullptr, true, true, false, {}});
-            source.outputs[static_cast<std::size_t>(output)].is_connected = true;
-            add_wire(from, output, to, input, wire.mode, 0, source.group != target.group);
-        }
+        for (const patch::PatchWire& wire : matter_.unfinished->wires) add_written(wire, {});
+        for (const BrokenWire& broken : matter_.unfinished->broken) add_written(broken.wire, broken.why);
+    }
+
+    /// A wire by the names in the text; a port that the node does not have is shown as well.
+    void add_written(const patch::PatchWire& wire, const std::string& fault) {
+        const int to = picture_.find(wire.to_node), from = wire.from_port.empty() ? -1 : picture_.find(wire.from_node);
+        if (to < 0) return;
+        PictureNode& target = picture_.nodes[static_cast<std::size_t>(to)];
+        const int input = port_named(target.inputs, wire.to_port, written_port(wire.to_port, &value::number, fault));
+        target.inputs[static_cast<std::size_t>(input)].is_connected = true;
+        if (from < 0) return;
+        PictureNode& source = picture_.nodes[static_cast<std::size_t>(from)];
+        const int output = port_named(source.outputs, wire.from_port, written_port(wire.from_port, nullptr, fault));
+        source.outputs[static_cast<std::size_t>(output)].is_connected = true;
+        add_wire(from, output, to, input, wire.mode, 0, source.group != target.group);
+        if (!fault.empty()) picture_.wires.back().fault = fault;
+    }
+
+    static PicturePort written_port(const std::string& name, const ValueType* type, const std::string& fault) {
+        PicturePort port{name, fault, "", type, true, true, type != nullptr, {}};
+        port.is_missing = !fault.empty();
+        return port;
     }
 
     void dress() {
