@@ -192,14 +192,18 @@ void CommandList::draw(const std::vector<Command>& commands, const Fonts& fonts)
         const Point all = point(ImGui::GetMainViewport()->Size);
         const Point size{std::min(640.0 * fonts.scale, 0.95 * all.x), std::min(560.0 * fonts.scale, 0.9 * all.y)};
         ImGui::SetNextWindowPos(vec((all - size) * 0.5));
-        ImGui::SetNextWindowSize(vec(size));
+        help_size_ = size;
     }
     if (!ImGui::BeginPopup(help_title)) return;
-    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
+    // A popup takes the size of its content, and columns that stretch would have none.
+    ImGui::BeginChild("page", vec(help_size_));
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_RowBg)) {
+        ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.38f);
+        ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 0.62f);
         const auto row = [](const char* keys, const char* what) {
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(keys);
+            ImGui::TextWrapped("%s", keys);
             ImGui::TableNextColumn();
             ImGui::TextWrapped("%s", what);
         };
@@ -225,6 +229,7 @@ void CommandList::draw(const std::vector<Command>& commands, const Fonts& fonts)
         row("Ctrl-click, Enter", "type a number, with its unit shown; Tab goes to the next field");
         ImGui::EndTable();
     }
+    ImGui::EndChild();
     mark_spot("keys");
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();

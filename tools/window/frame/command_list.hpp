@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/window/frame/commands.hpp"
+#include "tools/window/widgets/canvas.hpp"
 #include "tools/window/widgets/painter.hpp"
 
 #include <string>
@@ -34,6 +35,7 @@ private:
     std::vector<const Command*> found_;
     std::string words_;
     std::size_t chosen_ = 0;
+    Point help_size_;
     bool wants_open_ = false, wants_help_ = false, is_open_ = false;
 };
 
