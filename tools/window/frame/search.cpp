@@ -84,12 +84,15 @@ double place_of_meaning(std::string_view word, std::string_view name, std::strin
 
 }  // namespace
 
-double suits(std::string_view typed, std::string_view name, std::string_view about) {
-    const std::string wanted = lower(typed), in_name = lower(name), in_about = lower(about);
+double suits(std::string_view typed, std::string_view name, std::string_view about, std::string_view details) {
+    const std::string wanted = lower(typed), in_name = lower(name), in_about = lower(about),
+                      in_details = lower(details);
     double sum = 0.0;
     const auto words = words_of(wanted);
     for (const std::string_view word : words) {
-        const double place = place_of_meaning(word, in_name, in_about);
+        double place = place_of_meaning(word, in_name, in_about);
+        if (const std::size_t at = in_details.find(word); place < 0.9 && at != std::string::npos)
+            place = std::max(place, begins_word(in_details, at) ? 0.9 : 0.3);
         if (place == 0.0) return 0.0;
         sum += place;
     }

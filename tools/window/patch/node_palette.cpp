@@ -77,7 +77,7 @@ std::string NodePalette::draw(const Fonts& fonts) {
     std::string made;
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.62f);
-    if (ImGui::InputTextWithHint("##words", "what it does, or its name", &words_)) {
+    if (ImGui::InputTextWithHint("##words", "name, purpose, parameter or unit", &words_)) {
         found_ = types_for(words_, type_);
         chosen_ = 0;
     }

@@ -37,6 +37,14 @@ TEST_CASE("a node type is found by its name before others, and only where its in
     CHECK(has(types_for("ball", nullptr), "sphere_contact"));
     CHECK(has(types_for("", &value::pose), "sphere_contact"));
     CHECK_FALSE(has(types_for("", &value::pose), "audio_output"));
+    // By parameter, port and unit.
+    CHECK(has(types_for("friction", nullptr), "quasi_static_coupling"));
+    CHECK(has(types_for("n/mm", nullptr), "sphere_contact"));
+    CHECK(has(types_for("penetration", nullptr), "sphere_contact"));
+    // What was named stands above what only has such a port.
+    CHECK(types_for("gain", nullptr).front()->name == "gain");
+    // Without words those that patches use most.
+    CHECK(has({types_for("", nullptr).front(), types_for("", nullptr)[1]}, "record"));
     CHECK(types_for("no such thing at all", nullptr).empty());
 }
 
