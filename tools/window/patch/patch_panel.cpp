@@ -15,7 +15,8 @@ namespace tactus::window {
 namespace {
 
 constexpr double rounding = 6.0;
-constexpr double red_for_s = 1.5;
+/// Above it a group is outlined: single late ticks are only counted.
+constexpr double max_late_share = 0.01;
 constexpr ImU32 lane_ground = colour(0x171d26);
 constexpr double smallest_box = 9.0;  ///< pixels: smaller boxes are drawn without details
 
@@ -34,7 +35,7 @@ std::optional<double> PatchPanel::letters(double size, double room) const {
 
 bool PatchPanel::is_late(const std::string& group) const {
     const auto found = health_.find(group);
-    return found != health_.end() && ImGui::GetTime() - found->second.since < red_for_s;
+    return found != health_.end() && found->second.late_share > max_late_share;
 }
 
 std::string PatchPanel::port_name(const Hit& at) const {
@@ -88,8 +89,9 @@ void PatchPanel::notice_new_plan() {
     // Indices refer to the previous picture.
     wiring_ = {};
     hovered_ = menu_ = {};
-    // A fitted view stays fitted.
-    if (follows_size_) fits_ = false;
+    // A fitted view stays fitted, but not while somebody points at a node of it.
+    if (!under_.empty()) keep_under_pointer();
+    else if (follows_size_) fits_ = false;
     plan_version_ = bench_.plan_version();
     times_.clear();
     dragging_ = {};
@@ -100,6 +102,14 @@ void PatchPanel::notice_new_plan() {
     std::erase_if(chosen, [&](const std::string& name) { return bench_.picture().find(name) < 0; });
 }
 
+void PatchPanel::keep_under_pointer() {
+    const int index = bench_.picture().find(std::exchange(under_, {}));
+    if (index < 0) return;
+    const Box& box = bench_.picture().nodes[static_cast<std::size_t>(index)].box;
+    canvas_.origin = canvas_.origin + Point{box.left, box.top} - under_at_;
+    if (box.left != under_at_.x || box.top != under_at_.y) follows_size_ = false;
+}
+
 /// The status changes several times a second, and a patch can have ten thousand nodes.
 void PatchPanel::notice_status() {
     auto status = bench_.status();
@@ -108,8 +118,12 @@ void PatchPanel::notice_status() {
     status_ = std::move(status);
     for (const GroupStatus& group : status_->groups) {
         Health& health = health_[group.name];
-        if (group.missed > health.missed) health.since = ImGui::GetTime();
-        health.missed = group.missed;
+        const double now = ImGui::GetTime();
+        if (group.ticks < health.ticks) health = {};
+        if (now - health.begin < 1.0) continue;
+        const auto ticks = static_cast<double>(group.ticks - health.ticks);
+        const auto missed = static_cast<double>(group.missed - health.missed);
+        health = {now, group.ticks, group.missed, health.begin < 0.0 || ticks <= 0.0 ? 0.0 : missed / ticks};
     }
     std::unordered_map<std::string_view, const NodeStatus*> by_name;
     for (const NodeStatus& node : status_->nodes) by_name[node.name] = &node;
@@ -147,6 +161,11 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     handle_mouse();
     take_dropped_type();
     notice_new_plan();
+    under_ = is_pointed_ ? node_under_mouse() : std::string();
+    if (const int index = picture.find(under_); index >= 0) {
+        const Box& box = picture.nodes[static_cast<std::size_t>(index)].box;
+        under_at_ = {box.left, box.top};
+    }
 
     notice_status();
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
@@ -206,8 +225,11 @@ void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
                                          100.0 * group->load, group->late_p99_ms),
                              *small, tone::dim, false});
             if (group->missed > 0)
-                words.push_back({fmt::format("{} missed", group->missed), *small,
-                                 is_late(lane.name) ? tone::bad : tone::warm, true});
+                words.push_back(
+                    {fmt::format(
+                         "{} late{}", group->missed,
+                         is_late(lane.name) ? fmt::format(", above {:.0f} %", 100.0 * max_late_share) : std::string()),
+                     *small, is_late(lane.name) ? tone::bad : tone::dim, true});
         }
         const Point begin = screen(Point{picture.bounds.left + 16, lane.top + 8});
         double wide = 0.0;

@@ -101,9 +101,11 @@ private:
         bool is_backward = false;
         const ValueType* type = nullptr;
     };
+    /// Ticks of a group and the late ones among them, counted over a second.
     struct Health {
-        std::int64_t missed = 0;
-        double since = -1e9;  ///< time of the last missed deadline
+        double begin = -1e9;  ///< s, of the second
+        std::int64_t ticks = 0, missed = 0;  ///< at its beginning
+        double late_share = 0.0;  ///< in the last whole second
     };
 
     void notice_new_plan();
@@ -161,6 +163,8 @@ private:
     void add_wire_commands(std::vector<Command>& all);
     Point screen(Point world) const { return canvas_.to_pixel(world) + corner_; }
     Box screen(const Box& world) const;
+    /// The view moves with the node under the pointer when an edit arranges the patch anew.
+    void keep_under_pointer();
     /// Zoomed out so far that stacked boxes merge and single wires are not visible.
     bool is_afar() const { return canvas_.zoom < 0.12; }
     bool is_late(const std::string& group) const;
@@ -185,6 +189,8 @@ private:
     bool is_on_map_ = false;
     bool wants_part_name_ = false;
     mutable int pastes_ = 0;
+    std::string under_;  ///< the node under the pointer in the last picture
+    Point under_at_;  ///< its corner
     Point mouse_, menu_at_;  ///< in units of the picture
     bool is_pointed_ = false;  ///< the pointer is over the canvas
     std::optional<Arrival> arrival_;
