@@ -140,12 +140,19 @@ SceneModel::TaskMesh SceneModel::make_task(const std::string& path) {
     try {
         const training::Task task = training::load_task(path);
         geometry::SurfacePatch patch;
+        // Both faces a little off the plane: at the same depth they would shimmer.
+        constexpr double off = 0.05e-3;
         for (const training::PlannedCut& cut : task.cuts) {
             const double half = std::min(cut.half_length, widest);
-            const Vec3 a = cut.position(-half, 0.0), b = cut.position(half, 0.0), c = cut.position(half, cut.depth),
-                       d = cut.position(-half, cut.depth);
-            for (const auto& t : {std::array{a, b, c}, {a, c, d}, {c, b, a}, {d, c, a}})
-                display::add_triangle(patch, t[0], t[1], t[2], guide_colour);
+            const Vec3 c = cut.position(half, cut.depth), d = cut.position(-half, cut.depth);
+            for (const double side : {1.0, -1.0}) {
+                const Vec3 a = cut.position(-half, 0.0, side * off), b = cut.position(half, 0.0, side * off),
+                           e = cut.position(half, cut.depth, side * off),
+                           f = cut.position(-half, cut.depth, side * off);
+                const bool is_front = side > 0.0;
+                display::add_triangle(patch, a, is_front ? b : e, is_front ? e : b, guide_colour);
+                display::add_triangle(patch, a, is_front ? e : f, is_front ? f : e, guide_colour);
+            }
             add_bar(patch, d, c, bar_radius, guide_colour);
         }
         made.cut = renderer_.meshes().make();
