@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/training/warnings.hpp"
 #include "dsp/contact/contact_switch.hpp"
 #include "dsp/training/attempt_row.hpp"
 #include "graph/node/node.hpp"
@@ -31,7 +32,6 @@ const ValueType attempt_row_type{
     .load_asset = nullptr,
 };
 
-constexpr double near = 3e-3;          // m above the bone: from here on the cues speak
 constexpr double stop_ahead = 2e-3;    // m above the depth stop, and
 constexpr double margin_ahead = 1e-3;  // m outside of a margin, where the cue begins
 
@@ -103,7 +103,7 @@ struct Task {
         const double hot = heat.connected ? finite(heat.get()) : -1.0;
 
         const training::TaskLimits& limits = t.limits;
-        const bool is_near = now.depth > -near;
+        const bool is_near = now.depth > -training::near_bone;
         const double left = cut.depth - now.depth;
         const double aside = std::abs(now.distance) / cut.tolerance, turned = now.angle / cut.angle_tolerance;
         const double push = limits.force ? pressed / *limits.force : 0.0;
@@ -111,11 +111,6 @@ struct Task {
         angle = now.angle;
         depth_left = left;
         clearance = least;
-        off_plan = is_near && (aside > 1.0 || turned > 1.0);
-        too_deep = left < -cut.depth_tolerance;
-        too_near = margin_left < 0.0;
-        over_force = push > 1.0;
-        over_heat = limits.heat && hot > *limits.heat;
         const double shares = std::max({is_near ? std::max(aside, turned) : 0.0, push,
                                         is_near ? 1.0 - 0.5 * (left + cut.depth_tolerance) / stop_ahead : 0.0,
                                         1.0 - 0.5 * margin_left / margin_ahead});
@@ -141,7 +136,14 @@ struct Task {
         }
         if (stream_) stream_->write(tick.index, &row_, static_cast<std::size_t>(tick.frames), 0);
         elapsed = static_cast<double>(std::max<std::int64_t>(0, touched_ - 1)) * step;
-        over_time = limits.time && elapsed.get() > *limits.time;
+        const auto stands = training::warnings_of(t, cut, {now, margin_left, pressed, elapsed.get(), hot});
+        const auto is = [&](training::Warning which) { return stands[static_cast<std::size_t>(which)]; };
+        off_plan = is(training::Warning::off_plan);
+        too_deep = is(training::Warning::too_deep);
+        too_near = is(training::Warning::too_near);
+        over_force = is(training::Warning::over_force);
+        over_time = is(training::Warning::over_time);
+        over_heat = is(training::Warning::over_heat);
         min_clearance_ = std::min(min_clearance_, least);
         deepest_ = std::max(deepest_, now.depth);
         if (!touches) return;

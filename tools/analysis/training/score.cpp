@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,7 @@ void check_same_bone(const run::TaskSummary& said, const ScoredRun& run, const f
 struct Record {
     std::vector<training::AttemptSample> samples;
     std::optional<double> heat;
+    std::vector<double> heats;  ///< s, at each sample; below 0: unknown
     bool has_removed = false;
 };
 
@@ -85,6 +87,7 @@ Record record_of(const fs::path& file) {
         record.samples.push_back(s);
     }
     if (record.samples.empty()) throw Error(fmt::format("{}: has no samples", file.string()));
+    record.heats = columns[12];
     // Below 0: no wire said.
     if (columns[12].back() >= 0.0) record.heat = columns[12].back();
     return record;
@@ -133,6 +136,33 @@ std::vector<SparedScore> spared_of(const ScoredRun& run) {
         all.push_back({structure.name, injury.injured_m3() * 1e9, std::max(0.0, injury.closest()) * 1e3});
     }
     return all;
+}
+
+/// How long each warning stood, with the forces on the hand as recorded.
+std::array<double, training::warning_count> warning_times(const training::Task& task, const Record& record) {
+    std::array<double, training::warning_count> times{};
+    const auto& samples = record.samples;
+    std::optional<double> touched;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+        const training::AttemptSample& s = samples[n];
+        if (s.contact && !touched) touched = s.time;
+        training::AttemptState now;
+        const training::PlannedCut& cut = task.cuts[training::nearest_cut(task.cuts, s.pose.position)];
+        now.deviation = training::deviation_of(cut, task.blade, s.pose);
+        for (const training::SparedStructure& spared : task.spared)
+            now.margin_left =
+                std::min(now.margin_left, training::clearance_of(spared, task.blade, s.pose) - spared.margin);
+        now.hand_N = glm::length(s.force);
+        now.elapsed_s = touched ? s.time - *touched : 0.0;
+        now.heat_s = record.heats[n];
+        const auto stands = training::warnings_of(task, cut, now);
+        const double step = n + 1 < samples.size() ? samples[n + 1].time - s.time
+                            : n > 0                ? s.time - samples[n - 1].time
+                                                   : 0.0;
+        for (std::size_t w = 0; w < times.size(); ++w)
+            if (stands[w]) times[w] += step;
+    }
+    return times;
 }
 
 /// Samples of the blade at each cut.
@@ -254,6 +284,7 @@ ScoredRun score_run(const fs::path& folder, const fs::path& task) {
     if (record_name.empty() || fs::path(record_name).has_parent_path())
         throw Error(fmt::format("{}: the run has no record of its attempt", folder.string()));
     Record record = record_of(folder / record_name);
+    run.score.warnings_s = warning_times(run.task, record);
     run.samples = std::move(record.samples);
     run.score.device_scale = said.device_scale;
     run.score.limited = said.limited;

@@ -5,9 +5,11 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/training/task_file.hpp"
+#include "assets/training/warnings.hpp"
 #include "dsp/training/motion.hpp"
 #include "dsp/training/removed.hpp"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -48,6 +50,8 @@ struct Score {
     int strokes = 0;
     double seconds = 0.0, path_mm = 0.0;
     std::optional<double> heat_s;
+    /// s for which each warning stood live, in the order of training::Warning.
+    std::array<double, training::warning_count> warnings_s{};
 };
 
 /// An attempt with the data of its scores, for images.
