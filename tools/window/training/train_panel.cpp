@@ -2,11 +2,11 @@
 #include "tools/window/training/train_panel.hpp"
 
 #include "dsp/core/error.hpp"
-#include "tools/window/training/score_words.hpp"
 #include "tools/window/widgets/spots.hpp"
 #include "tools/window/widgets/theme.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +66,7 @@ void TrainPanel::follow(const std::shared_ptr<observe::Observer>& observer) {
     plan_version_ = bench_.plan_version();
     node_.clear();
     depth_.clear();
+    wrench_.clear();
     task_.reset();
     limit_N_ = 0.0;
     if (!bench_.plan() || !observer_) return;
@@ -74,7 +75,11 @@ void TrainPanel::follow(const std::shared_ptr<observe::Observer>& observer) {
             most != node.params.end() && node.type->role == NodeRole::hand_sink)
             max_N_ = most->second->value;
         for (const compile::ScheduleOutput& out : node.outputs)
-            if (out.name == "penetration" && depth_.empty()) depth_ = node.name + "." + out.name;
+            if (out.name == "penetration" && depth_.empty()) {
+                depth_ = node.name + "." + out.name;
+                const auto force = std::ranges::find(node.outputs, "wrench", &compile::ScheduleOutput::name);
+                if (force != node.outputs.end()) wrench_ = node.name + ".wrench";
+            }
         if (node.type->name != "task") continue;
         node_ = node.name;
         for (const AssetParam* asset : node.assets)
@@ -91,6 +96,7 @@ void TrainPanel::follow(const std::shared_ptr<observe::Observer>& observer) {
         watched_.push_back(std::move(port));
     };
     if (!depth_.empty()) watch(depth_);
+    if (!wrench_.empty()) watch(wrench_);
     if (node_.empty()) return;
     for (const char* name : numbers) watch(node_ + "." + name);
     for (const Warning& warning : warnings) watch(node_ + "." + warning.port);
@@ -104,6 +110,13 @@ double TrainPanel::number(const std::string& port) const {
 bool TrainPanel::flag(const std::string& port) const {
     const auto seen = observer_ ? observer_->latest<bool>(port) : std::nullopt;
     return seen && seen->value;
+}
+
+std::optional<TrainPanel::FirstCut> TrainPanel::first_cut() const {
+    constexpr double begun_s = 1.5, ahead = 8e-3;
+    if (!task_ || node_.empty() || bench_.status()->state != RunStatus::State::runs) return std::nullopt;
+    if (number(node_ + ".elapsed") > begun_s) return std::nullopt;
+    return FirstCut{task_->cut.point, task_->cut.position(0.0, ahead)};
 }
 
 void TrainPanel::meter(const Fonts& fonts, double force) const {
@@ -133,9 +146,19 @@ void TrainPanel::meter(const Fonts& fonts, double force) const {
     }
     const double peak = bar.left + std::clamp(peak_N_ / most, 0.0, 1.0) * wide;
     paint.line({peak, bar.top}, {peak, bar.bottom}, tone::dim, 1.0);
+    // What the tool has, and what of it the device gives, may differ: by its scale, its limit, or a fault.
+    const auto tool = observer_ && !wrench_.empty() ? observer_->latest<Wrench>(wrench_) : std::nullopt;
+    if (tool) {
+        const double has = glm::length(tool->value.force), thin = 5.0 * fonts.scale;
+        paint.box({bar.left, bar.bottom - thin, bar.left + std::clamp(has / most, 0.0, 1.0) * wide, bar.bottom},
+                  tone::text, 2.0);
+        const std::string text = fmt::format("tool {:.1f} N", has);
+        paint.text({bar.left + 8.0 * fonts.scale, bar.bottom - 18.0 * fonts.scale}, 11.0 * fonts.scale, tone::text,
+                   text);
+    }
     paint.frame(bar, tone::node_edge, 4.0);
-    paint.text({bar.left + 8.0 * fonts.scale, bar.top + 8.0 * fonts.scale}, 24.0 * fonts.scale, tone::text,
-               fmt::format("{:.1f} N{}", force, is_over ? " !" : ""));
+    paint.text({bar.left + 8.0 * fonts.scale, bar.top + (tool ? 2.0 : 8.0) * fonts.scale},
+               (tool ? 20.0 : 24.0) * fonts.scale, tone::text, fmt::format("{:.1f} N{}", force, is_over ? " !" : ""));
     paint.text_left_of({bar.right - 6.0, bar.bottom - 16.0 * fonts.scale}, 12.0 * fonts.scale, tone::text,
                        fmt::format("{:.0f} N", most));
 }
@@ -168,22 +191,67 @@ void TrainPanel::figures(const Fonts& fonts) {
     }
 }
 
+/// Each row with its limit, and what earlier attempts in this window reached.
+void TrainPanel::score_table(const Fonts& fonts) const {
+    const ScoreCard& card = *score_;
+    const ScoreCard* before = nullptr;
+    for (const ScoreCard& other : earlier_)
+        if (other.task == card.task) before = &other;
+    for (const ScoreRow& row : card.rows) {
+        const std::string value = row.note.empty() ? value_text(row) : row.note;
+        const bool has_side = row.limit || row.name.starts_with('!');
+        const ImU32 ink = row.is_bad ? tone::bad : row.is_close() ? tone::warm : has_side ? tone::good : tone::text;
+        ImGui::TextDisabled("%s", row.name.c_str());
+        ImGui::SameLine();
+        const float wide = ImGui::CalcTextSize(value.c_str()).x;
+        const float right = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - wide;
+        if (right < ImGui::GetCursorPosX()) ImGui::NewLine();
+        ImGui::SetCursorPosX(std::max(right, ImGui::GetStyle().WindowPadding.x));
+        ImGui::PushStyleColor(ImGuiCol_Text, ink);
+        ImGui::TextUnformatted(value.c_str());
+        ImGui::PopStyleColor();
+        std::string beside;
+        const auto add = [&](const std::string& words) { beside += (beside.empty() ? "" : ", ") + words; };
+        const bool is_told = !row.name.starts_with('!') || row.is_bad;
+        if (row.limit && is_told)
+            add(fmt::format("{} {:.3g} {}", row.better == ScoreRow::Better::more ? "at least" : "limit", *row.limit,
+                            row.unit));
+        if (before && is_told) {
+            if (const ScoreRow* last = before->row(row.name))
+                add("before " + (last->note.empty() ? value_text(*last) : last->note));
+            if (const ScoreRow* best = best_of(earlier_, card, row)) add("best " + value_text(*best));
+        }
+        if (beside.empty()) continue;
+        ImGui::PushFont(fonts.small);
+        ImGui::TextDisabled("  %s", beside.c_str());
+        ImGui::PopFont();
+    }
+    for (const std::string& note : card.notes) ImGui::TextWrapped("%s", note.c_str());
+}
+
 /// After the run: the score of an attempt at a task, or what the command would say.
-void TrainPanel::result() {
+void TrainPanel::result(const Fonts& fonts) {
     ViewedRun* const run = bench_.running();
     if (!run || !run->is_over()) return;
-    if (scoring_.valid() && scoring_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+    if (scoring_.valid() && scoring_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        if (score_ && score_->problem.empty()) earlier_.push_back(std::move(*score_));
         score_ = scoring_.get();
+    }
     // Not before the score of an earlier run is there: waiting would stop the window.
     if (scored_run_ != bench_.runs() && !scoring_.valid()) {
         scored_run_ = bench_.runs();
-        score_ = "computes the score...";
-        if (const std::string failure = bench_.status()->failure; !failure.empty()) score_ = failure;
-        else if (node_.empty()) score_ = run->summary_text();
+        said_.clear();
+        if (const std::string failure = bench_.status()->failure; !failure.empty()) said_ = failure;
+        else if (node_.empty()) said_ = run->summary_text();
         else scoring_ = std::async(std::launch::async, score_of, bench_.status()->folder);
     }
     ImGui::Separator();
-    ImGui::TextWrapped("%s", score_.c_str());
+    ImGui::BeginGroup();
+    if (scoring_.valid()) ImGui::TextWrapped("computes the score...");
+    else if (!said_.empty()) ImGui::TextWrapped("%s", said_.c_str());
+    else if (score_ && !score_->problem.empty()) ImGui::TextWrapped("%s", score_->problem.c_str());
+    else if (score_) score_table(fonts);
+    ImGui::EndGroup();
     if (!scoring_.valid()) mark_spot("score");
 }
 
@@ -204,7 +272,7 @@ void TrainPanel::draw(const std::shared_ptr<observe::Observer>& observer, bool h
         else bench_.stop();
     }
     mark_spot(is_over ? "again" : "end");
-    if (is_over) return result();
+    if (is_over) return result(fonts);
     figures(fonts);
     if (!has_mouse) return;
     ImGui::Separator();
