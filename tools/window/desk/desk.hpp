@@ -106,6 +106,7 @@ private:
     void draw_patch(double height);
     void draw_scopes(double height);
     void draw_scene(double height);
+    void draw_first_step(const Vec3& feed);
     void draw_node(double height);
     void draw_tree(double height);
     void draw_steps(double height);

@@ -3,11 +3,14 @@
 #include "tools/window/desk/desk.hpp"
 #include "tools/window/frame/layout_text.hpp"
 #include "tools/window/widgets/spots.hpp"
+#include "tools/window/widgets/theme.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace tactus::window {
@@ -155,6 +158,27 @@ void Desk::draw_scopes(double height) {
     scopes_.draw(feed(), fonts_);
 }
 
+/// The first thing to do, over the scene: which way the blade goes as it is seen now.
+void Desk::draw_first_step(const Vec3& feed) {
+    const auto picture = spot("scene picture");
+    if (!picture) return;
+    const Vec3 right = scene_.camera.orientation * Vec3(1.0, 0.0, 0.0),
+               up = scene_.camera.orientation * Vec3(0.0, 1.0, 0.0);
+    const double across = glm::dot(feed, right), above = glm::dot(feed, up);
+    const bool is_level = std::abs(across) > std::abs(above);
+    const std::string direction = is_level ? across > 0.0 ? "right" : "left" : above > 0.0 ? "up" : "down";
+    const std::string lines[] = {"Hold T: the saw runs.", fmt::format("Drag {}{} with the left button, into the bone.",
+                                                                      is_level ? "to the " : "", direction)};
+    const Painter paint(ImGui::GetWindowDrawList(), fonts_);
+    const double size = 1.1 * static_cast<double>(ImGui::GetFontSize());
+    const double wide = std::max(paint.width_of(lines[0], size), paint.width_of(lines[1], size));
+    const double left = picture->middle().x - 0.5 * wide, top = picture->top + 0.8 * size;
+    const Box box{left - 8.0, top - 5.0, left + wide + 8.0, top + 2.6 * size + 4.0};
+    paint.box(box, colour(0x12161d, 225), 5.0);
+    for (int i = 0; i < 2; ++i) paint.text({left, top + 1.3 * size * i}, size, tone::text, lines[i]);
+    set_spot("hint " + direction, box);
+}
+
 void Desk::draw_scene(double height) {
     const double s = fonts_.scale;
     const PanelFrame frame("scene", height, {6.0 * s, 6.0 * s}, {6.0 * s, 4.0 * s}, false);
@@ -166,6 +190,8 @@ void Desk::draw_scene(double height) {
         mark_spot("bones are loaded");
     }
     scene_.draw(take_ ? take_->scene() : shows_preview() ? preview_.observer() : bench_.observer(), fonts_);
+    if (layout == Layout::train && scene_.hand().is_there())
+        if (const auto first = train_.first_cut()) draw_first_step(first->within - first->entry);
 }
 
 void Desk::draw_tree(double height) {

@@ -116,7 +116,7 @@ std::optional<TrainPanel::FirstCut> TrainPanel::first_cut() const {
     constexpr double begun_s = 1.5, ahead = 8e-3;
     if (!task_ || node_.empty() || bench_.status()->state != RunStatus::State::runs) return std::nullopt;
     if (number(node_ + ".elapsed") > begun_s) return std::nullopt;
-    return FirstCut{task_->cut.point, task_->cut.position(0.0, ahead)};
+    return FirstCut{task_->cuts.front().point, task_->cuts.front().position(0.0, ahead)};
 }
 
 void TrainPanel::meter(const Fonts& fonts, double force) const {
