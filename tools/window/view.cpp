@@ -108,11 +108,7 @@ public:
 
     void open_take(const fs::path& folder) {
         auto take = std::make_unique<TakeBench>(folder);
-        RunChoice choice;
-        choice.patch = (folder / "patch-0.toml").string();
-        choice.overrides = take->take().about.overrides;
-        choice.seed = take->take().about.seed;
-        auto bench = std::make_unique<Workbench>(choice);
+        auto bench = std::make_unique<Workbench>(choice_of(take->take()));
         if (bench_ && !take_) {
             // The patch as it is called and as it was changed by now.
             behind_.reset();

@@ -46,6 +46,22 @@ std::set<std::string> scene_ports(const take::Take& take) {
 
 }  // namespace
 
+run::RunChoice choice_of(const take::Take& take) {
+    run::RunChoice choice;
+    choice.patch = (take.folder / "patch-0.toml").string();
+    choice.overrides = take.about.overrides;
+    choice.seed = take.about.seed;
+    patch::Problems ignored;
+    for (const patch::PatchAsset& asset : patch::read_patch(take.text, take.about.patch_file, ignored).assets) {
+        const bool is_given = std::ranges::any_of(
+            choice.overrides.assets, [&](const std::string& given) { return given.starts_with(asset.name + "="); });
+        if (!is_given)
+            choice.overrides.assets.push_back(
+                fmt::format("{}={}", asset.name, std::filesystem::absolute(asset.path).lexically_normal().string()));
+    }
+    return choice;
+}
+
 TakeBench::TakeBench(const std::filesystem::path& folder)
     : take_(take::Take::load(folder)), feed_(take_), scene_ports_(scene_ports(take_)), thread_([this] { work(); }) {}
 

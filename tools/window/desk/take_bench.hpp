@@ -6,6 +6,7 @@
 #include "engine/observe/observer.hpp"
 #include "engine/take/take_reader.hpp"
 #include "graph/compile/load_assets.hpp"
+#include "tools/run/run_choice.hpp"
 #include "tools/window/signal/feed.hpp"
 
 #include <atomic>
@@ -17,6 +18,10 @@
 #include <thread>
 
 namespace tactus::window {
+
+/// Opens the patch of a take. Its text lies in the folder of the take, but its relative paths start at the patch that was
+/// recorded: so do the assets, the task among them.
+run::RunChoice choice_of(const take::Take& take);
 
 class TakeBench {
 public:
