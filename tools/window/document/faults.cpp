@@ -122,7 +122,9 @@ private:
         made_.plan.reset();
         if (problems.empty()) {
             patch::Patch rest = std::move(whole);
-            const auto is_out = [&](const std::string& node) { return made_.unfinished.find(node) != nullptr; };
+            const std::vector<std::string> names = made_.unfinished.names();
+            const std::set<std::string_view> out(names.begin(), names.end());
+            const auto is_out = [&](const std::string& node) { return out.contains(node); };
             std::erase_if(rest.nodes, [&](const patch::PatchNode& node) { return is_out(node.name); });
             std::erase_if(rest.wires, [&](const patch::PatchWire& wire) {
                 return is_out(wire.to_node) || (!wire.from_port.empty() && is_out(wire.from_node));
