@@ -39,7 +39,7 @@ public:
         fade(dt);
         // Of two places that are as near the hand keeps its own: rounding does not send it to and fro.
         Vec3 aim = nearest;
-        if (is_known_ && glm::distance(nearest, nearest_) > 4.0 * glm::distance(p, p_) + still) {
+        if (is_known_ && glm::distance(nearest, nearest_) > 1.5 * glm::distance(p, p_) + still) {
             if (glm::distance(p, nearest_) - glm::distance(p, nearest) < hysteresis) aim = nearest_;
             else leave(nearest_);
         }
