@@ -9,6 +9,7 @@
 #include "graph/node/vessel_asset.hpp"
 #include "graph/node/visual.hpp"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -60,10 +61,12 @@ struct Vessel {
     Vector site_at{"0 mm, 0 mm, 0 mm", "where the end is sewn, in the scene"};
     Param gain{"3", "0", "20", "how many times as strong as it is the hand feels the pull"};
     Param max_force{"4 N", "0 N", "30 N", "limit of the force on the hand"};
-    Param pedicle{structural, "0 mm", "0 mm", "1 m", "length in the leg that is kept before the first piece; 0: all"};
+    static constexpr double min_pedicle = 20e-3;  // m
+    Param pedicle{structural, "0 mm", "0 mm", "1 m",
+                  "length in the leg that is kept before the first piece, at least 20 mm; 0: all"};
     Param beside{structural, "12 mm", "0.5 mm", "50 mm",
                  "it runs along a piece that is at most this far from its centre line"};
-    Param stiffness{structural, "1.86 N", "0.01 N", "100 N",
+    Param stiffness{structural, "1.86 N", "0.01 N", "20 N",
                     "force per strain: 62 kPa at 12 % on 3.6 mm² (Struczewska and others 2024)"};
     Param idle_rate{structural, "200 Hz", "1 Hz", "10 kHz",
                     "how often it is solved while the hand holds no piece of it"};
@@ -95,6 +98,10 @@ struct Vessel {
         settings.material.stiffness = stiffness;
         settings.material.radius = course->median_radius();
         settings.pedicle = pedicle;
+        // On its way of some centimetres a shorter one would be stretched to many times its length: no vessel, but a spring.
+        if (pedicle > 0.0 && pedicle < min_pedicle)
+            setup.fail("a pedicle of " + fmt::format("{:.3g}", pedicle * 1e3) +
+                       " mm reaches no site; give at least 20 mm, or 0 mm for all of the vessel");
         const std::vector<rope::Attachment> attached = rope::attachments_along(line, surfaces, beside);
         if (attached.empty())
             setup.fail("the vessel '" + course.name + "' runs along none of the pieces: none is within " +

@@ -20,9 +20,7 @@ double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_
 
 /// Number of failures; a node without any force counts as one.
 int sweep(const NodeType& type, std::uint64_t random_count) {
-    std::vector<test::NodeSetting> settings(5);
-    for (test::NodeSetting& corner : test::pairwise_corners(type)) settings.push_back(std::move(corner));
-    for (std::uint64_t n = 0; n < random_count; ++n) settings.push_back(test::random_setting(type, n));
+    const std::vector<test::NodeSetting> settings = test::bench_settings(type, random_count);
     const double begin = processor_time();
     int failed = 0, engaged = 0, refused = 0;
     double force = 0.0, gained = -1.0;

@@ -17,7 +17,6 @@ static const std::map<std::string_view, std::string_view>& only_in_bench() {
         {"dynamic_coupling",
          "a body of 100 kg without damping that goes through the middle of a wall is put back: 4 N"},
         {"tumour_margin", "needs a plan of a case: tests/nodes/plan"},
-        {"vessel", "needs a plan of a case: tests/nodes/plan"},
     };
     return all;
 }
@@ -39,6 +38,27 @@ TEST_CASE("every force that a node makes is continuous, passive on closed paths 
         }
         CAPTURE(type->name);
         CHECK(engaged > 0);
+    }
+}
+
+TEST_CASE("settings of the bench at which a force once jumped stay continuous", "[slow]") {
+    const std::map<std::string_view, std::vector<std::uint64_t>> once{
+        {"path_guide", {113, 266}},
+        {"point_proxy", {24, 52, 53}},
+        {"saw_blade", {70, 132}},
+        {"sphere_proxy", {40, 41, 52}},
+    };
+    for (const NodeType* type : force_types()) {
+        const auto found = once.find(type->name);
+        if (found == once.end()) continue;
+        const std::vector<NodeSetting> settings = bench_settings(*type, 300);
+        for (const std::uint64_t n : found->second) {
+            const ForceOutcome outcome = run_trial({type, settings[n], random_hand(n), n});
+            CAPTURE(type->name, n, settings[n].text());
+            CHECK(outcome.refusal == "");
+            CHECK(outcome.is_engaged());
+            for (const std::string& failure : outcome.failures) FAIL_CHECK(failure);
+        }
     }
 }
 

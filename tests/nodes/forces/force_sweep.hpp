@@ -59,6 +59,9 @@ std::vector<NodeSetting> pairwise_corners(const NodeType& type);
 /// Random setting number `n`: each member keeps its default with a probability of 0.3.
 NodeSetting random_setting(const NodeType& type, std::uint64_t n);
 
+/// The settings of the bench, by number: five times the defaults, the corners, and random ones.
+std::vector<NodeSetting> bench_settings(const NodeType& type, std::uint64_t random_count);
+
 /// Random hand number `n`: 0.5 to 20 N, 0.01 to 1 m/s, 500 to 4000 Hz, each uniform in its logarithm.
 SweptHand random_hand(std::uint64_t n);
 
