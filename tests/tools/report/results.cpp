@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results: one tree in text, JSON, HTML and PDF has the same digits, and outputs follow their schemas.
+#include "tests/support/catch.hpp"
+#include "tests/tools/pdf_text.hpp"
+#include "tests/tools/record_folder.hpp"
+#include "tools/report/blocks/pages.hpp"
+#include "tools/report/result/printers.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace tactus;
+using Catch::Matchers::ContainsSubstring;
+using nlohmann::json;
+using report::NumberFormat;
+using report::Result;
+using report::ResultEntry;
+
+namespace {
+
+/// A tree of named numbers, tables and sections. `shown` collects the digits that each printed format must contain.
+Result random_result(std::mt19937& random, int depth, std::vector<std::string>& shown) {
+    const auto number = [&](const std::string& key) {
+        std::uniform_real_distribution<double> exponent(-4.0, 5.0), sign(-1.0, 1.0);
+        const double value = sign(random) * std::pow(10.0, exponent(random));
+        const std::vector<NumberFormat> formats{report::fixed(2, "dB"), report::significant(4, "N"),
+                                                report::fixed(1, "ms", 1e3), report::significant(6)};
+        report::Number of(value);
+        const NumberFormat& format = formats[random() % formats.size()];
+        if (random() % 4 == 0) of.uncertainty = 0.01 * std::abs(value);
+        return ResultEntry{key, "value " + key, false, report::Severity::none, ResultEntry::Quantity{of, format}};
+    };
+    Result result{fmt::format("section {}", random() % 1000), {}};
+    for (int n = 0; n < 4; ++n) {
+        result.entries.push_back(number(fmt::format("n{}", n)));
+        shown.push_back(report::shown(result.entries.back()));
+    }
+    ResultEntry::Rows rows{{}, {{"a", "value a"}, {"b", "value b"}}};
+    for (int n = 0; n < 3; ++n) rows.rows.push_back({"", {number("a"), number("b")}});
+    for (const Result& row : rows.rows)
+        for (const ResultEntry& entry : row.entries) {
+            // The unit of a column may be in its head.
+            const std::string digits = report::shown(entry);
+            shown.push_back(digits.substr(0, digits.find(' ')));
+        }
+    result.entries.push_back({"rows", "table", false, report::Severity::none, std::move(rows)});
+    result.entries.push_back(
+        {"w", "warning", false, report::Severity::warning, ResultEntry::Texts{{"too few <turns>"}}});
+    if (depth > 0)
+        result.entries.push_back({"below", "below", false, report::Severity::none,
+                                  ResultEntry::Children{{random_result(random, depth - 1, shown)}, false}});
+    return result;
+}
+
+/// The JSON value of an entry, printed as the entry is.
+void check_json(const Result& result, const json& printed) {
+    for (const ResultEntry& entry : result.entries) {
+        CAPTURE(entry.key);
+        REQUIRE(printed.contains(entry.key));
+        const json& value = printed[entry.key];
+        if (const auto* quantity = std::get_if<ResultEntry::Quantity>(&entry.value)) {
+            ResultEntry again = entry;
+            report::Number number(value.get<double>());
+            number.uncertainty = quantity->number.uncertainty;
+            again.value = ResultEntry::Quantity{number, quantity->format};
+            CHECK(report::shown(again) == report::shown(entry));
+        } else if (const auto* rows = std::get_if<ResultEntry::Rows>(&entry.value)) {
+            REQUIRE(value.size() == rows->rows.size());
+            for (std::size_t n = 0; n < value.size(); ++n) check_json(rows->rows[n], value[n]);
+        } else if (const auto* children = std::get_if<ResultEntry::Children>(&entry.value)) {
+            check_json(children->results.front(), value);
+        }
+    }
+}
+
+/// The parts of JSON Schema that outputs use: type, properties, required, additionalProperties, items, const, anyOf.
+std::string broken_rule(const json& schema, const json& value, const std::string& where) {
+    const auto is = [&](const std::string& type) {
+        return type == "null"      ? value.is_null()
+               : type == "number"  ? value.is_number()
+               : type == "integer" ? value.is_number_integer()
+               : type == "string"  ? value.is_string()
+               : type == "boolean" ? value.is_boolean()
+               : type == "array"   ? value.is_array()
+                                   : value.is_object();
+    };
+    if (schema.contains("const") && value != schema["const"]) return where + ": not the constant";
+    if (schema.contains("anyOf")) {
+        for (const json& one : schema["anyOf"])
+            if (broken_rule(one, value, where).empty()) return {};
+        return where + ": none of the kinds";
+    }
+    if (!schema.contains("type")) return {};
+    const json types = schema["type"].is_array() ? schema["type"] : json::array({schema["type"]});
+    if (std::ranges::none_of(types, [&](const json& type) { return is(type.get<std::string>()); }))
+        return where + ": " + value.dump() + " is not " + types.dump();
+    if (value.is_array() && schema.contains("items"))
+        for (std::size_t n = 0; n < value.size(); ++n)
+            if (const std::string rule = broken_rule(schema["items"], value[n], where + "." + std::to_string(n));
+                !rule.empty())
+                return rule;
+    if (!value.is_object()) return {};
+    for (const json& key : schema.value("required", json::array()))
+        if (!value.contains(key.get<std::string>())) return where + ": without " + key.dump();
+    for (const auto& [key, one] : value.items()) {
+        if (!schema["properties"].contains(key)) return where + ": unknown " + key;
+        if (const std::string rule = broken_rule(schema["properties"][key], one, where + "." + key); !rule.empty())
+            return rule;
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("random results have equal digits in text, JSON, HTML and PDF") {
+    const test::Folder folder;
+    std::mt19937 random(7);
+    for (int n = 0; n < 20; ++n) {
+        std::vector<std::string> shown;
+        const Result result = random_result(random, 2, shown);
+        const std::string text = report::text_of(result), html = report::html_of(result);
+        for (const std::string& digits : shown) {
+            CAPTURE(digits);
+            CHECK_THAT(text, ContainsSubstring(digits));
+            CHECK_THAT(html, ContainsSubstring(digits));
+        }
+        check_json(result, json::parse(report::json_of(result).dump()));
+        if (n > 2) continue;
+        const std::string pdf = report::pdf_of(report::title_of(result), report::blocks_of(result)).bytes;
+        const std::optional<std::string> extracted = test::pdf_text(folder, folder.write("a.pdf", pdf));
+        if (!extracted) continue;
+        for (const std::string& digits : shown) {
+            CAPTURE(digits);
+            CHECK_THAT(*extracted, ContainsSubstring(digits));
+        }
+    }
+}
+
+TEST_CASE("warnings are before all values of a result, and markup in them is text") {
+    std::mt19937 random(3);
+    std::vector<std::string> shown;
+    const Result result = random_result(random, 0, shown);
+    const std::string text = report::text_of(result), html = report::html_of(result);
+    CHECK(text.find("warning: too few <turns>") < text.find("value n0"));
+    CHECK(html.find("too few &lt;turns&gt;") < html.find("value n0"));
+}
+
+TEST_CASE("numbers that are missing or not finite are dashes in print and null in JSON") {
+    const double inf = std::numeric_limits<double>::infinity();
+    for (const report::Number& number : {report::Number(), report::Number(inf), report::Number(-inf)}) {
+        const ResultEntry entry{"k", "name", false, report::Severity::none,
+                                ResultEntry::Quantity{number, report::fixed(1, "dB")}};
+        CHECK(report::shown(entry) == "–");
+        CHECK(json::parse(report::json_of({"", {entry}}).dump())["k"].is_null());
+    }
+    const ResultEntry zero{"k", "name", false, report::Severity::none,
+                           ResultEntry::Quantity{report::Number(-0.001), report::fixed(1, "dB")}};
+    CHECK(report::shown(zero) == "0.0 dB");
+}
+
+TEST_CASE("the JSON of orders follows its schema, and its files have one content in each format") {
+    const test::RecordFolder folder;
+    std::vector<double> x;
+    for (int n = 0; n < 16000; ++n) x.push_back(0.1 * std::sin(2.0 * std::numbers::pi * 100.0 * n / 8000.0));
+    folder.sound("tone.wav", x, 1, 8000);
+    REQUIRE(folder.tactus("generate schema schemas").code == 0);
+    const json schema = json::parse(test::slurp(folder.path / "schemas/orders.schema.json"));
+    for (const char* options : {"", " --orders 60", " --waterfall w.csv", " --from 0.5"}) {
+        const test::RecordOutcome outcome = folder.tactus(std::string("orders --json --rate 100 tone.wav") + options);
+        CAPTURE(options, outcome.err);
+        REQUIRE(outcome.code == 0);
+        const json answer = json::parse(outcome.out);
+        CHECK(answer["version"] == 1);
+        CHECK(broken_rule(schema, answer, "orders").empty());
+    }
+    json wrong = folder.tactus("orders --json --rate 100 tone.wav").answer();
+    wrong["channels"][0]["turns"] = "many";
+    CHECK_THAT(broken_rule(schema, wrong, "orders"), ContainsSubstring("channels.0.turns"));
+
+    const test::RecordOutcome quiet =
+        folder.tactus("orders --rate 100 tone.wav --quiet -o a.txt -o a.json -o a.html -o a.csv -o a.pdf");
+    REQUIRE(quiet.code == 0);
+    CHECK(quiet.out.empty());
+    const std::string text = folder.tactus("orders --rate 100 tone.wav").out;
+    CHECK(test::slurp(folder.path / "a.txt") == text);
+    CHECK_THAT(text, ContainsSubstring("0.0707"));
+    CHECK_THAT(test::slurp(folder.path / "a.html"), ContainsSubstring("0.0707"));
+    CHECK_THAT(test::slurp(folder.path / "a.csv"), ContainsSubstring("channels.0.orders.0.rms,0.0707"));
+    CHECK(test::slurp(folder.path / "a.pdf").starts_with("%PDF-"));
+    CHECK_THAT(folder.tactus("orders --rate 100 --orders 60 tone.wav").out,
+               ContainsSubstring("warning: channel 1: order"));
+    const test::RecordOutcome none = folder.tactus("orders --rate 100 tone.wav -o a.svg");
+    CHECK(none.code == 2);
+    CHECK_THAT(none.err, ContainsSubstring("no figure"));
+    CHECK(folder.tactus("orders --rate 100 tone.wav -o a.xls").code == 2);
+}

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/report/result/printers.hpp"
+
+#include "tools/report/figures/html_report.hpp"
+#include "tools/report/result/fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+namespace tactus::report {
+
+namespace {
+
+using file::Json;
+
+template <class... Each>
+struct Overload : Each... {
+    using Each::operator()...;
+};
+template <class... Each>
+Overload(Each...) -> Overload<Each...>;
+
+/// Characters: bytes that begin one.
+std::size_t width_of(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string padded(const std::string& text, std::size_t width, bool to_right) {
+    const std::string space(width - std::min(width, width_of(text)), ' ');
+    return to_right ? space + text : text + space;
+}
+
+bool is_printed(const ResultEntry& entry) { return !entry.name.empty(); }
+
+template <class Kind>
+const Kind* as(const ResultEntry& entry) {
+    return std::get_if<Kind>(&entry.value);
+}
+
+bool is_scalar(const ResultEntry& entry) {
+    return !as<ResultEntry::Rows>(entry) && !as<ResultEntry::Children>(entry) && !as<ResultEntry::Picture>(entry) &&
+           !as<ResultEntry::Series>(entry);
+}
+
+/// A name and a value on one line.
+bool is_line(const ResultEntry& entry) {
+    return is_printed(entry) && is_scalar(entry) && !is_missing(entry) && entry.severity != Severity::warning;
+}
+
+std::string_view unit_of(const ResultEntry& entry) {
+    if (const auto* q = as<ResultEntry::Quantity>(entry))
+        return q->number.unit.empty() ? q->format.unit : q->number.unit;
+    if (const auto* r = as<ResultEntry::Range>(entry)) return r->format.unit;
+    return {};
+}
+
+/// A table as cells. A column of numbers in one unit has it in its head.
+struct Cells {
+    std::vector<std::string> head;
+    std::vector<std::vector<std::string>> rows;
+    std::vector<bool> are_numbers, warnings;
+};
+
+const ResultEntry* entry_of(const Result& row, const std::pair<std::string, std::string>& column) {
+    for (const ResultEntry& entry : row.entries)
+        if (entry.key == column.first && entry.name == column.second) return &entry;
+    return nullptr;
+}
+
+Cells cells_of(const ResultEntry::Rows& table) {
+    Cells cells;
+    cells.rows.resize(table.rows.size());
+    cells.warnings.resize(table.rows.size());
+    for (const auto& column : table.columns) {
+        std::vector<const ResultEntry*> entries;
+        bool is_number = false, is_used = false;
+        std::string_view unit;
+        bool has_one_unit = true;
+        for (const Result& row : table.rows) {
+            const ResultEntry* entry = entry_of(row, column);
+            entries.push_back(entry);
+            if (!entry || is_missing(*entry)) continue;
+            is_used = true;
+            is_number |= as<ResultEntry::Quantity>(*entry) || as<ResultEntry::Integer>(*entry);
+            const auto* q = as<ResultEntry::Quantity>(*entry);
+            if (q && q->format.notation == NumberFormat::Notation::prefixed) has_one_unit = false;
+            if (unit.empty()) unit = unit_of(*entry);
+            has_one_unit &= unit == unit_of(*entry);
+        }
+        if (!is_used) continue;
+        const bool in_head = has_one_unit && !unit.empty();
+        cells.head.push_back(in_head ? fmt::format("{}, {}", column.second, unit) : column.second);
+        cells.are_numbers.push_back(is_number);
+        for (std::size_t n = 0; n < entries.size(); ++n) {
+            std::string text = entries[n] ? shown(*entries[n]) : "–";
+            if (in_head && is_number) {
+                const std::string ending = unit == "°" ? std::string(unit) : " " + std::string(unit);
+                for (std::size_t at = 0; (at = text.find(ending, at)) != std::string::npos;)
+                    text.erase(at, ending.size());
+            }
+            cells.rows[n].push_back(std::move(text));
+            if (entries[n] && (entries[n]->severity == Severity::warning || entries[n]->severity == Severity::fail))
+                cells.warnings[n] = true;
+        }
+    }
+    return cells;
+}
+
+std::string table_text(const Cells& cells, const std::string& indent) {
+    std::string out;
+    std::vector<std::size_t> widths;
+    for (const std::string& head : cells.head) widths.push_back(width_of(head));
+    for (const auto& row : cells.rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width_of(row[c]));
+    const auto add = [&](const std::vector<std::string>& row) {
+        std::string line = indent;
+        for (std::size_t c = 0; c < row.size(); ++c)
+            line += (c > 0 ? "  " : "") + padded(row[c], widths[c], cells.are_numbers[c]);
+        while (line.ends_with(' ')) line.pop_back();
+        out += line + "\n";
+    };
+    add(cells.head);
+    for (const auto& row : cells.rows) add(row);
+    return out;
+}
+
+void add_text(std::string& out, const Result& result, const std::string& indent) {
+    for (const ResultEntry& entry : result.entries)
+        if (const auto* texts = as<ResultEntry::Texts>(entry); texts && entry.severity == Severity::warning)
+            for (const std::string& text : texts->texts) out += fmt::format("{}{}: {}\n", indent, entry.name, text);
+    std::size_t width = 0;
+    for (const ResultEntry& entry : result.entries)
+        if (is_line(entry)) width = std::max(width, width_of(entry.name));
+    for (const ResultEntry& entry : result.entries) {
+        if (!is_printed(entry) || is_missing(entry)) continue;
+        if (const auto* rows = as<ResultEntry::Rows>(entry))
+            out += fmt::format("{}{}\n{}", indent, entry.name, table_text(cells_of(*rows), indent + "  "));
+        else if (const auto* children = as<ResultEntry::Children>(entry)) {
+            for (const Result& one : children->results) {
+                out += fmt::format("{}{}\n", indent, one.title.empty() ? entry.name : one.title);
+                add_text(out, one, indent + "  ");
+            }
+        } else if (is_line(entry)) {
+            out += fmt::format("{}{}  {}\n", indent, padded(entry.name, width, false), shown(entry));
+        }
+    }
+}
+
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json value_json(const ResultEntry& entry) {
+    return std::visit(
+        Overload{[](const ResultEntry::Quantity& q) { return q.number.value ? number_json(*q.number.value) : Json(); },
+                 [](const ResultEntry::Range& r) {
+                     return r.ends ? Json::array({number_json(r.ends->first), number_json(r.ends->second)}) : Json();
+                 },
+                 [](const ResultEntry::Integer& i) { return i.value ? Json(*i.value) : Json(); },
+                 [](const ResultEntry::Text& t) { return t.text ? Json(*t.text) : Json(); },
+                 [](const ResultEntry::Flag& f) { return f.value ? Json(*f.value) : Json(); },
+                 [](const ResultEntry::Texts& t) { return Json(t.texts); },
+                 [](const ResultEntry::Series& s) {
+                     Json list = Json::array();
+                     for (std::size_t n = 0; n < s.size; ++n) list.push_back(number_json(s.at(n)));
+                     return list;
+                 },
+                 [](const ResultEntry::Picture&) { return Json(); },
+                 [](const ResultEntry::Rows& r) {
+                     Json list = Json::array();
+                     for (const Result& row : r.rows) list.push_back(json_of(row));
+                     return list;
+                 },
+                 [](const ResultEntry::Children& c) {
+                     if (!c.is_list) return c.results.empty() ? Json() : json_of(c.results.front());
+                     Json list = Json::array();
+                     for (const Result& one : c.results) list.push_back(json_of(one));
+                     return list;
+                 }},
+        entry.value);
+}
+
+void add_blocks(std::vector<ReportBlock>& out, const Result& result) {
+    ReportList warnings{{}, true};
+    ReportTable values{{"value", ""}, {}};
+    for (const ResultEntry& entry : result.entries)
+        if (const auto* texts = as<ResultEntry::Texts>(entry); texts && entry.severity == Severity::warning)
+            std::ranges::copy(texts->texts, std::back_inserter(warnings.items));
+    if (!warnings.items.empty()) out.emplace_back(std::move(warnings));
+    for (const ResultEntry& entry : result.entries)
+        if (const auto* picture = as<ResultEntry::Picture>(entry); picture && picture->draw)
+            out.emplace_back(Drawing{picture->draw(), entry.name});
+    for (const ResultEntry& entry : result.entries)
+        if (is_line(entry)) {
+            values.rows.push_back({entry.name, shown(entry)});
+            values.warnings.push_back(entry.severity == Severity::fail);
+        }
+    if (!values.rows.empty()) out.emplace_back(std::move(values));
+    for (const ResultEntry& entry : result.entries) {
+        if (!is_printed(entry) || is_missing(entry)) continue;
+        if (const auto* rows = as<ResultEntry::Rows>(entry)) {
+            Cells cells = cells_of(*rows);
+            out.emplace_back(Heading{entry.name});
+            out.emplace_back(ReportTable{std::move(cells.head), std::move(cells.rows), {}, std::move(cells.warnings)});
+        } else if (const auto* children = as<ResultEntry::Children>(entry)) {
+            for (const Result& one : children->results) {
+                out.emplace_back(Heading{one.title.empty() ? entry.name : one.title});
+                add_blocks(out, one);
+            }
+        }
+    }
+}
+
+std::string csv_cell(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + "\"";
+}
+
+void add_csv(std::string& out, const Json& json, const std::string& path) {
+    const auto below = [&](const std::string& key) { return path.empty() ? key : path + "." + key; };
+    if (json.is_object())
+        for (const auto& [key, value] : json.items()) add_csv(out, value, below(key));
+    else if (json.is_array())
+        for (std::size_t n = 0; n < json.size(); ++n) add_csv(out, json[n], below(std::to_string(n)));
+    else
+        out += fmt::format("{},{}\n", csv_cell(path),
+                           json.is_null()     ? std::string()
+                           : json.is_string() ? csv_cell(json.as_text())
+                                              : json.dump());
+}
+
+}  // namespace
+
+std::string text_of(const Result& result) {
+    std::string out = result.title.empty() ? "" : result.title + "\n";
+    add_text(out, result, result.title.empty() ? "" : "  ");
+    return out;
+}
+
+Json json_of(const Result& result) {
+    Json json = Json::object();
+    for (const ResultEntry& entry : result.entries)
+        if (!entry.key.empty() && !(entry.is_omitted && is_missing(entry))) json[entry.key] = value_json(entry);
+    return json;
+}
+
+Json output_json(const Result& result) {
+    Json json{{"version", result_version}};
+    json.update(json_of(result));
+    return json;
+}
+
+std::vector<ReportBlock> blocks_of(const Result& result) {
+    std::vector<ReportBlock> out;
+    add_blocks(out, result);
+    return out;
+}
+
+std::string title_of(const Result& result) {
+    if (!result.title.empty()) return result.title;
+    for (const ResultEntry& entry : result.entries)
+        if (const auto* children = as<ResultEntry::Children>(entry); children && !children->results.empty())
+            return title_of(children->results.front());
+    return {};
+}
+
+std::string html_of(const Result& result) { return html::page(title_of(result), html_of(blocks_of(result), "r")); }
+
+std::string csv_of(const Result& result) {
+    std::string out = "value_of,value\n";
+    add_csv(out, json_of(result), "");
+    return out;
+}
+
+Json schema_of_number() { return {{"type", Json::array({"number", "null"})}}; }
+Json schema_of_list(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
+Json schema_of_texts() { return schema_of_list({{"type", "string"}}); }
+Json schema_or_null(Json schema) {
+    if (!schema.contains("type")) return {{"anyOf", Json::array({std::move(schema), {{"type", "null"}}})}};
+    schema["type"] = Json::array({schema["type"], "null"});
+    return schema;
+}
+
+Json schema_of_output(std::string_view title, const Json& schema) {
+    Json all{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", std::string(title)}};
+    all.update(schema);
+    all["properties"]["version"] = {{"const", result_version}};
+    all["required"].push_back("version");
+    return all;
+}
+
+}  // namespace tactus::report

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// The result of an analysis as a tree of named values, from which every format is printed.
+#pragma once
+
+#include "devices/display/figure.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace tactus::report {
+
+/// How a number is shown. In JSON it has all digits, in the unit of its key (`delay_s`, `gain_db`).
+struct NumberFormat {
+    enum class Notation {
+        fixed,        ///< `digits` decimals
+        significant,  ///< `digits` significant digits, without trailing zeros
+        prefixed,     ///< the same, with a prefix of the unit: "350 µm"
+    };
+    Notation notation = Notation::significant;
+    int digits = 4;
+    std::string unit{};   ///< shown after the number; empty: none, or that of the value
+    double scale = 1.0;   ///< shown number per value: 1e3 for ms of a value in s
+};
+
+/// 1e3 · value with `digits` decimals and "ms", for example.
+inline NumberFormat fixed(int digits, std::string unit = "", double scale = 1.0) {
+    return {NumberFormat::Notation::fixed, digits, std::move(unit), scale};
+}
+inline NumberFormat significant(int digits, std::string unit = "", double scale = 1.0) {
+    return {NumberFormat::Notation::significant, digits, std::move(unit), scale};
+}
+inline NumberFormat prefixed(int digits, std::string unit = "") {
+    return {NumberFormat::Notation::prefixed, digits, std::move(unit), 1.0};
+}
+
+/// A quantity, or none: JSON then has null and a table a dash.
+struct Number {
+    Number() = default;
+    Number(double value_, std::string unit_ = {}) : value(value_), unit(std::move(unit_)) {}
+    Number(const std::optional<double>& value_) : value(value_) {}
+
+    std::optional<double> value;
+    std::string unit{};  ///< where it differs from one result to the next; otherwise that of the format
+    std::optional<double> uncertainty{};  ///< one standard deviation, in the unit of the value
+};
+
+/// What a value means for the reader; it selects the order (warnings first) and the colour.
+enum class Severity {
+    none,
+    pass,
+    fail,
+    warning,
+};
+
+struct Result;
+
+/// A value of the tree. JSON contains those with a key, the printed formats those with a name.
+struct ResultEntry {
+    struct Quantity {
+        Number number;
+        NumberFormat format;
+    };
+    struct Range {
+        std::optional<std::pair<double, double>> ends;
+        NumberFormat format;
+    };
+    struct Integer {
+        std::optional<long long> value;
+    };
+    struct Text {
+        std::optional<std::string> text;
+    };
+    struct Flag {
+        std::optional<bool> value;
+    };
+    struct Texts {
+        std::vector<std::string> texts;
+    };
+    /// A view of values that live as long as what was analysed; JSON contains all of them, no printed format does.
+    struct Series {
+        std::size_t size = 0;
+        std::function<double(std::size_t)> at{};
+    };
+    /// Drawn when a format shows it.
+    struct Picture {
+        std::function<display::Figure()> draw;
+    };
+    struct Rows {
+        std::vector<Result> rows;
+        std::vector<std::pair<std::string, std::string>> columns{};  ///< key and heading of the printed ones
+    };
+    /// Sections of a page, each with its title.
+    struct Children {
+        std::vector<Result> results;
+        bool is_list;  ///< in JSON; otherwise there is one at most
+    };
+
+    std::string key, name;
+    bool is_omitted = false;  ///< in JSON a value that is missing is left out, not null
+    Severity severity = Severity::none;
+    std::variant<Quantity, Range, Integer, Text, Flag, Texts, Series, Picture, Rows, Children> value;
+};
+
+struct Result {
+    std::string title;
+    std::vector<ResultEntry> entries;
+
+    const ResultEntry* find(std::string_view key) const;
+};
+
+/// The digits of a value, the same in all printed formats: "3.1 ms ± 0.1 ms", "pass", "–" without a value. Empty for rows,
+/// children, series and pictures.
+std::string shown(const ResultEntry& entry);
+
+/// Whether the value is missing: no number, no text, no rows.
+bool is_missing(const ResultEntry& entry);
+
+}  // namespace tactus::report
