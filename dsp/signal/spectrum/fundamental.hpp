@@ -52,6 +52,9 @@ public:
     /// Marks a gap: no section spans it.
     void gap();
     FundamentalEstimate estimate() const;
+    /// Density of the whole record (Hann, `suggested_segment`, half overlap, mean), of which the estimate is made.
+    /// Allocates.
+    Spectrum spectrum() const { return whole_.spectrum(); }
 
 private:
     static constexpr std::size_t max_candidates = 6;

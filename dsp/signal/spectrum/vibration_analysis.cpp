@@ -39,14 +39,15 @@ bool same(const WelchSettings& a, const WelchSettings& b) {
 }  // namespace
 
 VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames)
-    : settings_(settings),
-      frames_(frames),
-      lines_(WelchSettings::hann(settings.psd.rate, suggested_segment(settings.psd.rate, frames),
-                                 suggested_segment(settings.psd.rate, frames) / 2)),
-      bands_(band_settings(settings.psd.rate, frames)),
-      fundamental_(settings.psd.rate, frames, settings.lowest, settings.highest) {
+    : settings_(settings), frames_(frames) {
+    if (settings.only_psd) {
+        psd_.emplace(settings.psd);
+        return;
+    }
     const std::size_t segment = suggested_segment(settings.psd.rate, frames);
     if (!same(settings.psd, WelchSettings::hann(settings.psd.rate, segment, segment / 2))) psd_.emplace(settings.psd);
+    bands_.emplace(band_settings(settings.psd.rate, frames));
+    fundamental_.emplace(settings.psd.rate, frames, settings.lowest, settings.highest);
     if (settings.envelope) {
         const auto [low, high] = *settings.envelope;
         if (!(low > 0.0) || !(high > low) || !(high < 0.5 * settings.psd.rate))
@@ -64,17 +65,14 @@ VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size
 }
 
 void VibrationAnalysis::push(std::span<const double> samples) {
-    if (settings_.only_psd) {
-        (psd_ ? *psd_ : lines_).push(samples);
-        return;
-    }
-    level_.push(samples);
-    moments_.push(samples, mean_);
-    lines_.push(samples);
+    if (settings_.only_psd) return psd_->push(samples);
+    if (!known_level_) level_.push(samples);
+    const double mean = known_level_ ? known_level_->mean() : 0.0;
+    moments_.push(samples, mean);
     if (in_piece_ == 0) surround();
     shifted_.assign(samples.begin(), samples.end());
-    for (double& x : shifted_) x -= mean_;
-    bands_.push(shifted_);
+    for (double& x : shifted_) x -= mean;
+    bands_->push(shifted_);
     if (octaves_) octaves_->push(shifted_);
     in_piece_ += samples.size();
     pushed_ += samples.size();
@@ -87,18 +85,18 @@ void VibrationAnalysis::push(std::span<const double> samples) {
             if ((*envelope_)(x, value)) envelope_values_.push_back(value);
         envelope_spectrum_->push(envelope_values_);
     }
-    fundamental_.push(samples);
+    fundamental_->push(samples);
 }
 
 void VibrationAnalysis::surround() {
     const WelchSettings settings = band_settings(settings_.psd.rate, frames_);
     shifted_.assign(settings.overlap, 0.0);
-    bands_.push(shifted_);
+    bands_->push(shifted_);
 }
 
 Spectrum VibrationAnalysis::band_spectrum() const {
     // A copy takes the end: more may be pushed after a report.
-    WelchStream<double> ended = bands_;
+    WelchStream<double> ended = *bands_;
     const WelchSettings settings = band_settings(settings_.psd.rate, frames_);
     ended.push(std::vector<double>(settings.segment, 0.0));
     Spectrum spectrum = ended.spectrum();
@@ -109,30 +107,33 @@ Spectrum VibrationAnalysis::band_spectrum() const {
 }
 
 void VibrationAnalysis::gap() {
+    if (psd_) psd_->forget_waiting();
+    if (settings_.only_psd) return;
     if (in_piece_ > 0) {
         const WelchSettings settings = band_settings(settings_.psd.rate, frames_);
         shifted_.assign(settings.segment, 0.0);
-        bands_.push(shifted_);
-        bands_.forget_waiting();
+        bands_->push(shifted_);
+        bands_->forget_waiting();
         in_piece_ = 0;
     }
     if (octaves_) octaves_->gap();
-    lines_.forget_waiting();
-    if (psd_) psd_->forget_waiting();
-    fundamental_.gap();
+    fundamental_->gap();
 }
 
 VibrationReport VibrationAnalysis::report() const {
     VibrationReport out;
-    out.level = level_;
-    out.lines = lines_.spectrum();
+    if (settings_.only_psd) {
+        out.psd = psd_->spectrum();
+        return out;
+    }
+    out.level = known_level_.value_or(level_);
+    out.lines = fundamental_->spectrum();
     out.psd = psd_ ? psd_->spectrum() : out.lines;
-    if (settings_.only_psd) return out;
     out.moments = moments_;
     out.spectrogram = spectrogram_;
     if (octaves_) out.filtered = octaves_->bands();
     if (out.lines.power.size() < 8) return out;
-    out.fundamental = fundamental_.estimate();
+    out.fundamental = fundamental_->estimate();
     out.harmonics = harmonic_table(out.lines, out.fundamental.frequency, settings_.orders);
     out.thd = total_harmonic_distortion(out.harmonics);
     out.cepstrum = real_cepstrum(out.lines);

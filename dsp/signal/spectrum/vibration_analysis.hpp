@@ -50,8 +50,9 @@ public:
     /// `frames`: length of the record. Throws Error when the settings are invalid.
     VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames);
 
-    /// Sets the mean of the whole record, before the first `push`; bands and moments exclude it.
-    void set_mean(double mean) { mean_ = mean; }
+    /// Sets the level of the whole record, before the first `push`: bands and moments exclude its mean. Without it the mean
+    /// is taken as 0, and the level is that of the samples pushed.
+    void set_level(const Level& level) { known_level_ = level; }
     void push(std::span<const double> samples);
     /// Marks a gap: no segment spans it.
     void gap();
@@ -63,15 +64,15 @@ private:
 
     AnalysisSettings settings_;
     std::size_t frames_;
-    Level level_;
+    std::optional<Level> known_level_;
+    Level level_;  // of the samples pushed, without a known one
     Moments moments_;
-    WelchStream<double> lines_, bands_;
-    double mean_ = 0.0;
+    std::optional<WelchStream<double>> bands_;
     std::size_t in_piece_ = 0;  // samples since the start or the last gap
     std::size_t pushed_ = 0;
     std::vector<double> shifted_;
-    FundamentalStream fundamental_;
-    std::optional<WelchStream<double>> psd_;
+    std::optional<FundamentalStream> fundamental_;  // its spectrum is that of the lines
+    std::optional<WelchStream<double>> psd_;  // when its settings are others, or alone
     std::optional<BandEnvelope> envelope_;
     std::optional<WelchStream<double>> envelope_spectrum_;
     std::optional<Spectrogram> spectrogram_;

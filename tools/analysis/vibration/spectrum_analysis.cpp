@@ -157,7 +157,7 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
             for (std::size_t i = 0; i < chosen.size(); ++i) levels[i].push(block.channels[chosen[i]]);
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             if (wanted.integrations > 0) integrations.emplace_back(wanted, out.rate, out.recorded.si, levels[i].mean());
-            else analyses[i].set_mean(levels[i].mean());
+            else analyses[i].set_level(levels[i]);
         }
         reader.rewind();
     }
