@@ -63,8 +63,8 @@ std::set<std::uint64_t> ids_of(const Sweep& sweep, std::uint64_t (*content)(cons
     return ids;
 }
 
-const std::string head = "format = 1\ntitle = \"Try\"\n";
-const std::string grid = head + R"([axes.stiffness]
+const std::string preamble = "format = 1\ntitle = \"Try\"\n";
+const std::string grid = preamble + R"([axes.stiffness]
 unit = "N/mm"
 log_range = [0.1, 10]
 count = 3
@@ -125,7 +125,7 @@ TEST_CASE("the content of a file is part of a point, its folder is not") {
     const SweepPlace place;
     place.write("a/one.wav", "1");
     place.write("a/two.wav", "2");
-    const std::string text = head +
+    const std::string text = preamble +
                              "[axes.take]\nfiles = \"a/*.wav\"\n[inputs]\npatch = \"a/one.wav\"\n[[step]]\n"
                              "command = [\"cat\", \"{take}\", \"{take.stem}\", \"{inputs.patch}\"]\n";
     const Sweep sweep = place.load(text);
@@ -149,7 +149,7 @@ TEST_CASE("the content of a file is part of a point, its folder is not") {
 TEST_CASE("rows of a table are levels with a field for each column") {
     const SweepPlace place;
     place.write("subjects.csv", "name,age\nP01,31\nP02,28\n");
-    const Sweep sweep = place.load(head +
+    const Sweep sweep = place.load(preamble +
                                    "[axes.subject]\ncsv = \"subjects.csv\"\n[[step]]\ncommand = [\"echo\", "
                                    "\"{subject.name} {subject.age}\"]\n");
     const TaskList list(sweep, no_content);
@@ -158,7 +158,7 @@ TEST_CASE("rows of a table are levels with a field for each column") {
     // A row that moves within the file is the same point.
     place.write("subjects.csv", "name,age\nP02,28\nP01,31\n");
     CHECK(ids_of(load_sweep(place.path / "sweep.toml", {}, place.path)) == std::set{list.id(0), list.id(1)});
-    CHECK(place.error(head + "[axes.subject]\ncsv = \"subjects.csv\"\n[[step]]\ncommand = [\"{subject.nme}\"]\n")
+    CHECK(place.error(preamble + "[axes.subject]\ncsv = \"subjects.csv\"\n[[step]]\ncommand = [\"{subject.nme}\"]\n")
               .find("did you mean 'subject.name'") != std::string::npos);
 }
 
@@ -194,7 +194,7 @@ TEST_CASE("a shifted Sobol design of 2^k samples has one sample in each of 2^k i
 TEST_CASE("axes of a design are drawn together, and more samples keep the first") {
     const SweepPlace place;
     const auto text = [&](int samples, const std::string& more) {
-        return head +
+        return preamble +
                fmt::format(
                    "samples = {}\n[axes.mass]\nunit = \"g\"\nlog_random = [10, 1000]\n[axes.level]\nsobol = [0, 1]\n{}"
                    "[[step]]\ncommand = [\"echo\", \"{{mass}} {{level}}\"]\n",
@@ -214,7 +214,8 @@ TEST_CASE("axes of a design are drawn together, and more samples keep the first"
 
 TEST_CASE("levels of a range are written as a person writes them") {
     const SweepPlace place;
-    const Sweep sweep = place.load(head + "[axes.a]\nrange = [0.1, 0.5]\ncount = 5\n[[step]]\ncommand = [\"{a}\"]\n");
+    const Sweep sweep =
+        place.load(preamble + "[axes.a]\nrange = [0.1, 0.5]\ncount = 5\n[[step]]\ncommand = [\"{a}\"]\n");
     std::string all;
     for (const Level& level : sweep.axes[0].levels) all += level.text + " ";
     CHECK(all == "0.1 0.2 0.3 0.4 0.5 ");
@@ -222,7 +223,7 @@ TEST_CASE("levels of a range are written as a person writes them") {
 
 TEST_CASE("seeds are common to all levels unless they are independent") {
     const SweepPlace place;
-    const std::string text = head + "[axes.a]\nvalues = [1, 2]\n[seeds]\ncount = 3\nfirst = 100\n";
+    const std::string text = preamble + "[axes.a]\nvalues = [1, 2]\n[seeds]\ncount = 3\nfirst = 100\n";
     const Sweep common = place.load(text), own = place.load(text + "independent = true\n");
     const TaskList a(common, no_content), b(own, no_content);
     std::set<std::uint64_t> seeds;
@@ -239,27 +240,27 @@ TEST_CASE("a sweep file is refused with the place and the remedy") {
     const std::string step = "[[step]]\ntactus = [\"render\"]\n";
     const std::pair<std::string, std::string> wrong[] = {
         {"title = \"x\"\n", "begins with format = 1"},
-        {head + "[axes.a]\nvalues = [1]\nrange = [1, 2]\n", "exactly one of values"},
-        {head + "[axes.a]\nvalues = [1, 1]\n", "has the level '1' twice"},
-        {head + "[axes.seed]\nvalues = [1]\n", "a column that every sweep has"},
-        {head + "[axes.a]\nrange = [2, 1]\ncount = 3\n", "first bound must be below"},
-        {head + "[axes.a]\nlog_range = [0, 1]\ncount = 3\n", "number from"},
-        {head + "[axes.a]\nrandom = [0, 1]\n", "samples = 256"},
-        {head + "[axes.a]\nunit = \"N\"\nvalues = [\"1 N\"]\n", "write numbers"},
-        {head + "[axes.a]\nfiles = \"none/*.wav\"\n", "no file matches"},
-        {head + "[inputs]\npatch = \"none.toml\"\n", "there is no file"},
-        {head + "[[step]]\ntactus = [\"render\"]\ncommand = [\"x\"]\n", "a step is either"},
-        {head + "[[step]]\ntactus = [\"bench\"]\n", "{tactus}"},
-        {head + "[[step]]\ntactus = [\"sweep\", \"run\"]\n", "cannot be a step"},
-        {head + "[[step]]\ncommand = [\"{nothing}\"]\n", "no axis, input"},
-        {head + "[[step]]\ncommand = [\"{out\"]\n", "without partner"},
-        {head + "[[step]]\ncommand = [\"x\"]\nvalues = {a = \"b\"}\n", "no JSON pointer"},
-        {head + "[[step]]\ncommand = [\"x\"]\nfiles = [\"../x\"]\n", "below {out}"},
-        {head + step + "[limits]\nmemory = \"5 kB\"\n", "memory"},
-        {head + step + "[limits]\ntime = \"5 m\"\n", "5 m"},
-        {head + step + "[[figure]]\nname = \"f\"\nvalue = \"none\"\nx = \"a\"\n", "no step has a value"},
-        {head + "unknown = 1\n", "unknown"},
-        {head + "[axes.a]\nrange = [0, 1]\ncount = 5000000\n[seeds]\ncount = 5000\n", "points"},
+        {preamble + "[axes.a]\nvalues = [1]\nrange = [1, 2]\n", "exactly one of values"},
+        {preamble + "[axes.a]\nvalues = [1, 1]\n", "has the level '1' twice"},
+        {preamble + "[axes.seed]\nvalues = [1]\n", "a column that every sweep has"},
+        {preamble + "[axes.a]\nrange = [2, 1]\ncount = 3\n", "first bound must be below"},
+        {preamble + "[axes.a]\nlog_range = [0, 1]\ncount = 3\n", "number from"},
+        {preamble + "[axes.a]\nrandom = [0, 1]\n", "samples = 256"},
+        {preamble + "[axes.a]\nunit = \"N\"\nvalues = [\"1 N\"]\n", "write numbers"},
+        {preamble + "[axes.a]\nfiles = \"none/*.wav\"\n", "no file matches"},
+        {preamble + "[inputs]\npatch = \"none.toml\"\n", "there is no file"},
+        {preamble + "[[step]]\ntactus = [\"render\"]\ncommand = [\"x\"]\n", "a step is either"},
+        {preamble + "[[step]]\ntactus = [\"bench\"]\n", "{tactus}"},
+        {preamble + "[[step]]\ntactus = [\"sweep\", \"run\"]\n", "cannot be a step"},
+        {preamble + "[[step]]\ncommand = [\"{nothing}\"]\n", "no axis, input"},
+        {preamble + "[[step]]\ncommand = [\"{out\"]\n", "without partner"},
+        {preamble + "[[step]]\ncommand = [\"x\"]\nvalues = {a = \"b\"}\n", "no JSON pointer"},
+        {preamble + "[[step]]\ncommand = [\"x\"]\nfiles = [\"../x\"]\n", "below {out}"},
+        {preamble + step + "[limits]\nmemory = \"5 kB\"\n", "memory"},
+        {preamble + step + "[limits]\ntime = \"5 m\"\n", "5 m"},
+        {preamble + step + "[[figure]]\nname = \"f\"\nvalue = \"none\"\nx = \"a\"\n", "no step has a value"},
+        {preamble + "unknown = 1\n", "unknown"},
+        {preamble + "[axes.a]\nrange = [0, 1]\ncount = 5000000\n[seeds]\ncount = 5000\n", "points"},
     };
     for (const auto& [text, message] : wrong) {
         CAPTURE(text, message);
@@ -272,7 +273,7 @@ TEST_CASE("a sweep file is refused with the place and the remedy") {
 TEST_CASE("two points with the same inputs are refused") {
     const SweepPlace place;
     place.write("a.csv", "x\n1\n1\n");
-    const Sweep sweep = place.load(head + "[axes.a]\ncsv = \"a.csv\"\n");
+    const Sweep sweep = place.load(preamble + "[axes.a]\ncsv = \"a.csv\"\n");
     CHECK_THROWS_WITH(TaskList(sweep, no_content),
                       Catch::Matchers::ContainsSubstring("points 1 and 2 have the same inputs"));
 }
