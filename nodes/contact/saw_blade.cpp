@@ -39,7 +39,10 @@ struct SawBlade {
                      "N, N m"};
     In<Wrench> applied{optional, "what the device was given, device_output.applied as delay 1", "N, N m"};
     Out<Wrench> wrench{"on the blade, about its origin", "N, N m"};
-    Out<Pose> held{"pose of the blade: 'pose', moved as far as a slot of the guide requires", "m"};
+    Out<Pose> held{
+        "pose of the blade: 'pose', moved as far as a slot of the guide requires; 0.1 m back until the guide "
+        "is seated and the blade free",
+        "m"};
     Out<double> slot{"of the guide that holds the blade: 1 for the first; 0: none"};
     Out<double> load{"thrust against the cutting direction", "N"};
     Out<double> stroke_force{"of the teeth along the stroke, to and fro at the stroke's rate", "N"};
@@ -133,6 +136,7 @@ struct SawBlade {
         released_.attach(setup);
         last_state_ = saw::HoldState::engaged;
         last_pose_ = {};
+        is_in_hand_ = !guide_body_ || !seated.connected;
         max_guide_force_ = 0.0;
         touch_ = {};
         pause_ = {};
@@ -152,7 +156,9 @@ struct SawBlade {
         const Pose at = guided(drive);
         const saw::SawContact now = blade_->step(bone.get(), at, drive, law_, guide_body_ ? &guide_now_ : nullptr);
         wrench = hold_.on_hand(now.wrench) * std::min<double>(device_scale, max_felt_stiffness / stiffness);
-        held = at;
+        // With the guide in the hand there is no saw in it: nothing that the blade would pass is injured.
+        is_in_hand_ = is_in_hand_ || (is_seated() && now.state == saw::HoldState::engaged);
+        held = is_in_hand_ ? at : Pose{at.position - at.rotate(Vec3(0.0, laid_aside, 0.0)), at.orientation};
         slot = hold_.slot() + 1;
         load = now.thrust;
         stroke_force = now.along;
@@ -211,7 +217,9 @@ private:
     saw::SlotHold hold_;
     std::unique_ptr<volume::BoneEditor> guide_body_;  // never edited
     volume::BoneSnapshot guide_now_;
+    static constexpr double laid_aside = 0.1;  // m
     Pose last_pose_;
+    bool is_in_hand_ = true;
     double max_guide_force_ = 0.0;
     Notice waits_{tool_waits}, released_{tool_released};
     saw::HoldState last_state_ = saw::HoldState::engaged;
