@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/document/live_commands.hpp"
 
-#include "assets/file/whole_file.hpp"
-#include "assets/plan/plan_file.hpp"
 #include "tests/tools/window/plan/plan_rig.hpp"
 
 using namespace tactus;
@@ -55,19 +53,4 @@ TEST_CASE("a button that is pressed elsewhere after a command does not mean the 
     rig.bench.press("lock");
     rig.pictures(150);
     CHECK(rig.is_locked(3));
-}
-
-TEST_CASE("a plan that cannot be read is told once", "[virtual][slow]") {
-    PlanRig rig("planning-trauma");
-    file::write_whole_file(rig.run.file(), "no plan");
-    CaseRun other(rig.bench);
-    const auto problems = [&] {
-        return std::ranges::count_if(rig.bench.messages(), [](const Message& m) { return m.is_problem; });
-    };
-    const auto before = problems();
-    for (int n = 0; n < 120; ++n) {
-        other.tend(rig.bench.observer());
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    CHECK(problems() == before + 1);
 }
