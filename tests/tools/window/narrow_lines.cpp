@@ -88,7 +88,7 @@ TEST_CASE("the history of faults has its place beside a long title, and stays wh
         RunStatus status;
         status.state = state;
         status.faults.push_back({"hand", "no force arrived in time", 1.6, 2.7, 4.25});
-        draw(800.0f, 100.0f, [&](const Fonts& fonts) { run_bar(bench, status, nullptr, fonts); });
+        draw(800.0f, 100.0f, [&](const Fonts& fonts) { run_bar(bench, status, nullptr, {}, fonts); });
         CAPTURE(static_cast<int>(state));
         const auto faults = spot("faults"), undo = spot("Undo"), save = spot("Saved"), record = spot("record");
         REQUIRE((faults && undo && save && record));
