@@ -245,6 +245,16 @@ private:
 
 }  // namespace
 
+std::optional<std::string> refusal_of(const std::vector<Fault>& before, const std::vector<Fault>& after) {
+    const auto has = [](const std::vector<Fault>& all, const Fault& fault) {
+        return std::ranges::find(all, fault.message, &Fault::message) != all.end();
+    };
+    const bool repairs = std::ranges::any_of(before, [&](const Fault& fault) { return !has(after, fault); });
+    const auto added = std::ranges::find_if(after, [&](const Fault& fault) { return !has(before, fault); });
+    if (repairs || added == after.end()) return std::nullopt;
+    return added->text;
+}
+
 std::optional<Correction> correction_in(std::string_view message) {
     constexpr std::string_view mark = "; did you mean '";
     const std::size_t at = message.find(mark);

@@ -44,6 +44,11 @@ using CompilePatch = std::function<std::optional<compile::Schedule>(patch::Patch
 /// are left out in the same way.
 Anatomy anatomy_of(std::string_view text, const std::filesystem::path& file, const CompilePatch& compile);
 
+/// Why an edit that leads from the errors `before` to those `after` is refused; nothing: it is not. A patch with errors is
+/// repaired one by one, and a repair may bring to light what the compiler could not see before: an edit is refused when it
+/// adds errors and repairs none.
+std::optional<std::string> refusal_of(const std::vector<Fault>& before, const std::vector<Fault>& after);
+
 /// The name that a message proposes: "…'sin'…; did you mean 'sine'?" gives "sin" and "sine".
 struct Correction {
     std::string wrong, suggestion;

@@ -96,17 +96,9 @@ std::optional<std::string> Workbench::check(std::string_view text) {
     return checked_.problem();
 }
 
-/// Why an edit is refused; nothing: it is not. A patch with errors is repaired one by one, and a repair may bring to
-/// light what the compiler could not see before.
 std::optional<std::string> Workbench::refusal(std::string_view text) {
-    if (const auto problem = check(text); !problem || faults_.empty()) return problem;
-    const auto has = [](const std::vector<Fault>& all, const Fault& fault) {
-        return std::ranges::find(all, fault.message, &Fault::message) != all.end();
-    };
-    const bool repairs = std::ranges::any_of(faults_, [&](const Fault& f) { return !has(checked_.faults, f); });
-    const auto added = std::ranges::find_if(checked_.faults, [&](const Fault& f) { return !has(faults_, f); });
-    if (repairs || added == checked_.faults.end()) return std::nullopt;
-    return added->text;
+    check(text);
+    return refusal_of(faults_, checked_.faults);
 }
 
 /// Shows the plan that was checked last.

@@ -71,7 +71,7 @@ bool Workbench::lead(const Ends& before, const Ends& now, const std::string& don
             wire.to_node + "." + wire.to_port == before.to)
             mode = edit::mode_text(wire);
     try {
-        if (!mode.empty() && !judge(led(editor_->text(), mode)).problem.empty()) mode.clear();
+        if (!mode.empty() && refusal_of(faults_, judge(led(editor_->text(), mode)).faults)) mode.clear();
     } catch (const Error&) {
         // The edit says what is wrong.
     }
@@ -80,9 +80,7 @@ bool Workbench::lead(const Ends& before, const Ends& now, const std::string& don
 
 std::optional<std::string> Workbench::objection(const std::string& from, const std::string& to) const {
     try {
-        const Judged judged = judge(edit::with_wire(editor_->text(), {from, to, {}}, taken_by(to)));
-        if (judged.problem.empty()) return std::nullopt;
-        return judged.problem;
+        return refusal_of(faults_, judge(edit::with_wire(editor_->text(), {from, to, {}}, taken_by(to))).faults);
     } catch (const Error& error) {
         return error.what();
     }
