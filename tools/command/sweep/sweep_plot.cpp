@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus sweep plot: a figure over the results, of the sweep file or chosen here.
 #include "dsp/core/error.hpp"
+#include "tools/command/figure_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/sweep/sweep_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/comparison_figure.hpp"
 #include "tools/report/sweep/sweep_figure.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/terminal.hpp"
@@ -22,6 +22,7 @@ struct SweepPlotChoice {
     std::filesystem::path folder;
     std::string out, figure, statistic = "mean";
     sweep::FigureChoice own;
+    FigureChoice picture;
 };
 
 sweep::FigureChoice figure_of(const SweepPlotChoice& choice, const sweep::Sweep& sweep) {
@@ -56,7 +57,7 @@ int sweep_plot(const SweepPlotChoice& choice) {
     const analysis::Results results(folder);
     results.require_agreement();
     const analysis::FigureData data = analysis::figure_data(results, figure_of(choice, folder.sweep()));
-    report::write_figure(report::draw_sweep(data), choice.out);
+    save_figure(report::draw_sweep(data), choice.out, choice.picture);
     if (results.done() < results.size())
         say(stderr,
             fmt::format("tactus: {} of {} points are done; the figure shows those\n", results.done(), results.size()));
@@ -66,7 +67,8 @@ int sweep_plot(const SweepPlotChoice& choice) {
 Action declare_sweep_plot(VerbOptions& verb) {
     const auto choice = std::make_shared<SweepPlotChoice>();
     verb.add("folder", choice->folder, "folder of a sweep").required();
-    verb.add("-o,--out", choice->out, "figure, .svg or .png").required();
+    verb.add("-o,--out", choice->out, "figure, .svg, .png or .pdf").required();
+    add_figure_options(verb, choice->picture);
     const Option figure = verb.add("--figure", choice->figure, "figure of the sweep file; default: its first");
     Option value = verb.add("--value", choice->own.value, "column of the results, for a figure of its own");
     value.excludes(figure);
