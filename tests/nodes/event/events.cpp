@@ -51,7 +51,7 @@ NodeHarness& feed_events(NodeHarness& node, const std::string& pattern) {
     });
 }
 
-std::string pattern_of(const NodeHarness& node, const std::string& output) {
+std::string marks_of(const NodeHarness& node, const std::string& output) {
     std::string text;
     for (const bool value : node.values<bool>(output)) text += value ? '#' : '.';
     return text;
@@ -118,7 +118,7 @@ TEST_CASE("a contact begins and ends at its tick, with speed and depth") {
     CHECK(all[1].event.values[0] == Approx(0.3));
     CHECK(all[1].event.values[1] == Approx(2.5e-3));
     CHECK(all[2].tick == 8);
-    CHECK(pattern_of(node, "in_contact") == "...####.#");
+    CHECK(marks_of(node, "in_contact") == "...####.#");
 }
 
 TEST_CASE("with a tool's contact a contact begins and ends with it, whatever the depth") {
@@ -127,7 +127,7 @@ TEST_CASE("with a tool's contact a contact begins and ends with it, whatever the
     node.feed<bool>("contact", [](std::int64_t k) { return k >= 2 && k < 6; });
     node.prepare();
     node.run(8);
-    CHECK(pattern_of(node, "in_contact") == "..####..");
+    CHECK(marks_of(node, "in_contact") == "..####..");
     REQUIRE(given(node).size() == 2);
     CHECK(given(node)[1].event.values[1] == Approx(3e-3));
 }
@@ -205,12 +205,12 @@ TEST_CASE("a trigger shows each event as one edge, and its gate is open from a b
     NodeHarness node("event_trigger", {.period = ms});
     feed_events(node, ".b..e.*..iii").prepare();
     node.run(18);
-    CHECK(pattern_of(node, "trigger") == ".#..#.#.#.#.#.#...");
-    CHECK(pattern_of(node, "gate") == ".###..############");
+    CHECK(marks_of(node, "trigger") == ".#..#.#.#.#.#.#...");
+    CHECK(marks_of(node, "gate") == ".###..############");
     NodeHarness ends("event_trigger", {.period = ms});
     feed_events(ends, ".b..e.*..iii").set("on", "end").prepare();
     ends.run(12);
-    CHECK(pattern_of(ends, "trigger") == "....#.#.....");
+    CHECK(marks_of(ends, "trigger") == "....#.#.....");
 }
 
 TEST_CASE("events are counted by kind, with what was lost") {
