@@ -18,7 +18,7 @@ using tactus::test::Folder;
 
 namespace {
 
-RunChoice choice_of(const Folder& folder, const std::string& text) {
+RunChoice broken_choice(const Folder& folder, const std::string& text) {
     RunChoice choice;
     choice.patch = folder.write("broken.toml", text).string();
     choice.out = folder.path / "out";
@@ -43,7 +43,7 @@ const Fault& fault_of(const Workbench& bench, const std::string& part) {
 
 TEST_CASE("a patch with errors shows all its nodes and wires, and lists every error with its place") {
     const Folder folder;
-    const Workbench bench(choice_of(folder, broken_patch));
+    const Workbench bench(broken_choice(folder, broken_patch));
     CHECK(bench.is_broken());
     // The compiler alone stops at two of them.
     REQUIRE(bench.faults().size() == 3);
@@ -68,7 +68,7 @@ TEST_CASE("a patch with errors shows all its nodes and wires, and lists every er
 
 TEST_CASE("errors are repaired one by one, and after the last one the patch compiles") {
     const Folder folder;
-    Workbench bench(choice_of(folder, broken_patch));
+    Workbench bench(broken_choice(folder, broken_patch));
     REQUIRE(bench.faults().size() == 3);
     REQUIRE(bench.correct(fault_of(bench, "'sin'")));
     CHECK(bench.faults().size() == 2);
@@ -88,7 +88,7 @@ TEST_CASE("errors are repaired one by one, and after the last one the patch comp
 
 TEST_CASE("an edit that adds an error to a patch with errors and repairs none is refused") {
     const Folder folder;
-    Workbench bench(choice_of(folder, broken_patch));
+    Workbench bench(broken_choice(folder, broken_patch));
     const std::string text = bench.editor().text();
     CHECK_FALSE(bench.set("hand", "no_such_thing", "1"));
     CHECK(bench.editor().text() == text);
@@ -101,7 +101,7 @@ TEST_CASE("lines that are no TOML leave the rest of the patch in sight") {
     const Folder folder;
     std::string text = tactus::test::sound_patch;
     text.replace(text.find("stiffness = \"0.8 N/mm\""), 22, "stiffness = \"0.8 N/mm");
-    Workbench bench(choice_of(folder, text));
+    Workbench bench(broken_choice(folder, text));
     REQUIRE(bench.faults().size() == 1);
     CHECK(bench.picture().nodes.size() == 6);
     CHECK(node_of(bench, "ball").is_at_fault);
@@ -114,7 +114,7 @@ TEST_CASE("lines that are no TOML leave the rest of the patch in sight") {
 
 TEST_CASE("a repair from outside clears the errors of a patch") {
     const Folder folder;
-    Workbench bench(choice_of(folder, broken_patch));
+    Workbench bench(broken_choice(folder, broken_patch));
     bench.tend();
     REQUIRE(bench.is_broken());
     folder.write("broken.toml", tactus::test::sound_patch);
@@ -134,7 +134,7 @@ TEST_CASE("a sub-patch with errors is one node at fault, and the rest of the pat
     const Folder folder;
     folder.write("part.toml",
                  "[outputs]\nout = \"tone.signal\"\n[nodes.tone]\ntype = \"sine\"\nrate = \"outer\"\nno = 1\n");
-    Workbench bench(choice_of(folder,
+    Workbench bench(broken_choice(folder,
                               "wires = [\"part.out -> half.in\"]\n[nodes.part]\ntype = \"patch:part.toml\"\n"
                               "rate = \"48 kHz\"\n[nodes.half]\ntype = \"gain\"\nrate = \"48 kHz\"\n"
                               "[nodes.alone]\ntype = \"sine\"\nrate = \"48 kHz\"\n"));
@@ -156,7 +156,7 @@ TEST_CASE("a sub-patch with errors is one node at fault, and the rest of the pat
 
 TEST_CASE("a patch whose errors lie in no line of it shows its nodes, and none runs") {
     const Folder folder;
-    RunChoice choice = choice_of(folder, tactus::test::sound_patch);
+    RunChoice choice = broken_choice(folder, tactus::test::sound_patch);
     choice.overrides.settings = {"nobody.gain=2"};
     const Workbench bench(choice);
     REQUIRE(bench.faults().size() == 1);
