@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/error.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include <utility>
@@ -39,10 +40,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
     const std::string* best = nullptr;
     // More edits than half of the word's length give no useful suggestion.
-    std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
+    std::size_t least = 2 * std::max<std::size_t>(2, word.size() / 2) + 1;
     for (const std::string& candidate : candidates) {
         const bool prefix = word.size() >= 2 && (candidate.starts_with(word) || word.starts_with(candidate));
-        const std::size_t distance = prefix ? 1 : edit_distance(word, candidate);
+        // A prefix counts as one and a half edits: less likely than one wrong letter, and more than two.
+        std::size_t distance = 2 * edit_distance(word, candidate);
+        if (prefix) distance = std::min<std::size_t>(distance, 3);
         if (distance < least) {
             least = distance;
             best = &candidate;

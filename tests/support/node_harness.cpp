@@ -339,7 +339,10 @@ const std::vector<std::byte>& NodeHarness::trace(const std::string& name) const 
 std::uint64_t NodeHarness::output_hash() const {
     Hash all = hash_;
     for (const auto& list : {std::cref(host.records), std::cref(host.sounds)})
-        for (const auto& stream : list.get()) all.add_bytes(stream->bytes.data(), stream->used);
+        for (const auto& stream : list.get())
+            // By the type: its bytes may hold padding.
+            for (std::size_t at = 0; at < stream->used; at += stream->format.type->size)
+                stream->format.type->hash(all, stream->bytes.data() + at);
     for (const auto& [name, port] : host.devices) all.add_bytes(&port->wrench, sizeof(Wrench));
     return all.value();
 }

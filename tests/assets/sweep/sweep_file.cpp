@@ -260,7 +260,7 @@ TEST_CASE("a sweep file is refused with the place and the remedy") {
         {preamble + step + "[limits]\ntime = \"5 m\"\n", "5 m"},
         {preamble + step + "[[figure]]\nname = \"f\"\nvalue = \"none\"\nx = \"a\"\n", "no step has a value"},
         {preamble + "unknown = 1\n", "unknown"},
-        {preamble + "[axes.a]\nrange = [0, 1]\ncount = 5000000\n[seeds]\ncount = 5000\n", "points"},
+        {preamble + "[axes.a]\nrange = [0, 1]\ncount = 5000\n[seeds]\ncount = 5000\n", "points"},
     };
     for (const auto& [text, message] : wrong) {
         CAPTURE(text, message);

@@ -118,9 +118,9 @@ struct Declared final : MemberVisitor {
     }
     void param(std::string_view name, Param& p) override {
         // The scene decides which body is held. A bound on the computing time of a tick cuts an evaluation off, and the
-        // force with it: what it does to a force is not judged.
+        // force with it: what it does to a force is not judged. A saw is swept without a guide.
         if (name == "held") has_held = true;
-        else if (!p.is_trigger && name != "budget" && name != "iterations")
+        else if (!p.is_trigger && name != "budget" && name != "iterations" && name != "guide_stiffness")
             factors.push_back({std::string(name), {}, p.min, p.max, p.is_discrete});
     }
     void choice(std::string_view name, Choice& c) override { factors.push_back({std::string(name), c.options, 0, 0}); }

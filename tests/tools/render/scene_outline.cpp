@@ -31,7 +31,8 @@ TEST_CASE("a saw trainer shows a bone, and a blade with its force") {
     REQUIRE(outline.bones.size() == 1);
     CHECK(outline.bones[0].port == "carve.bone");
     REQUIRE(outline.blades.size() == 1);
-    CHECK(outline.blades[0].pose == "place.pose");
+    // As a guide would hold it.
+    CHECK(outline.blades[0].pose == "blade.held");
     CHECK(outline.blades[0].wrench == "blade.wrench");
     CHECK(outline.blades[0].shape.length == Approx(0.04));
     CHECK(outline.handles.empty());

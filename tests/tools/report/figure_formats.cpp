@@ -63,7 +63,7 @@ TEST_CASE("librsvg draws the SVG file of a figure as its PNG file shows it") {
     CHECK(static_cast<double>(far) / static_cast<double>(ours.rgb.size()) < 0.01);
 }
 
-TEST_CASE("--dpi is the resolution of a PNG figure, and the text of a PDF figure can be read") {
+TEST_CASE("the option --dpi is the resolution of a PNG figure, and the text of a PDF figure can be read") {
     const test::Folder folder;
     const std::string png = (folder.path / "a.png").string(), pdf = (folder.path / "a.pdf").string();
     report::write_figure(all_items(), png, 300.0);

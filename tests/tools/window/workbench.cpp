@@ -319,9 +319,10 @@ TEST_CASE("a file saved elsewhere is taken over by what runs, parameters that we
     REQUIRE(come_about([&] { return status()->edits == 1; }));
     CHECK(bench.picture().find("more") >= 0);
     folder.write("voice.toml", voice + "oops");
-    REQUIRE(come_about([&] { return status(), !bench.plan(); }));
+    REQUIRE(come_about([&] { return status(), bench.is_broken(); }));
     CHECK(bench.undo());
     REQUIRE(bench.plan());
+    CHECK_FALSE(bench.is_broken());
     CHECK(bench.picture().find("more") >= 0);
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     CHECK(status()->edits == 1);
@@ -508,7 +509,7 @@ TEST_CASE("a run whose patch is broken ends with the reason and leaves the bench
     RunChoice choice = choice_in(folder);
     folder.write("voice.toml", voice + "[nodes.bad]\ntype = \"gian\"\nrate = \"48 kHz\"\n");
     Workbench bench(choice);
-    CHECK_FALSE(bench.plan());
+    CHECK(bench.is_broken());
     CHECK(bench.messages().back().text.find("did you mean 'gain'") != std::string::npos);
     bench.run();
     REQUIRE(come_about([&] { return bench.running()->is_over(); }));

@@ -109,7 +109,8 @@ Finished run_process(const std::vector<std::string>& words, const fs::path& fold
         ::dup2(err.handle(), STDERR_FILENO);
         if (::chdir(folder.c_str()) != 0) ::_exit(127);
         ::execvp(argv[0], argv.data());
-        ::dprintf(STDERR_FILENO, "%s: cannot be run: %s\n", argv[0], std::strerror(errno));
+        const std::string why = fmt::format("{}: cannot be run: {}\n", words.front(), std::strerror(errno));
+        [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, why.data(), why.size());
         ::_exit(127);
     }
     int status = 0;

@@ -37,7 +37,8 @@ std::string output_of(const std::vector<std::string>& words) {
         ::dup2(out[1], STDOUT_FILENO);
         ::dup2(err[1], STDERR_FILENO);
         ::execvp(argv[0], argv.data());
-        ::dprintf(STDERR_FILENO, "%s", std::strerror(errno));
+        const std::string_view why = std::strerror(errno);
+        [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, why.data(), why.size());
         ::_exit(127);
     }
     ::close(out[1]);
