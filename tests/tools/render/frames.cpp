@@ -108,6 +108,7 @@ TEST_CASE("pictures of all other patches of the library look as they did", "[lon
                   {"gripper-on-arm", "--seconds 4 --view-from iso"},
                   {"gripper-wqsm", "--seconds 1 --no-legend"},
                   {"burr-training", "--seconds 6 --view-from top --no-legend"},
+                  {"saw-guide", "--seconds 3 --view-from iso --no-legend"},
                   {"fragments", "--seconds 2 --view-from iso --no-legend"},
                   {"saw-training", "--seconds 4 --view-from iso --no-legend"},
                   {"planning-trauma", "--seconds 4 --view-from front --no-legend"},

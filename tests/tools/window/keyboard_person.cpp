@@ -141,7 +141,7 @@ TEST_CASE("the keyboard alone goes to other places in a list of files", "[displa
     REQUIRE(shows("file inner"));
     // The third place is the library, the second the folder where the command works.
     person.chord({"Alt_L"}, "3");
-    CHECK(shows("file touch-sphere.toml"));
+    CHECK(shows("file fragments.toml"));
     keep(person, "keyboard-8-places");
     person.chord({"Alt_L"}, "2");
     REQUIRE(shows("file inner"));

@@ -69,13 +69,15 @@ TEST_CASE("who holds a fragment gives no other name before it is let go and wher
     ++haptic::window_hand().windows;
     Rig rig({"hand.device=mouse", "grasp.reach=1 m"});
     std::int64_t buttons = button_trigger;
+    Pose at;
     rig.also = [&] {
         haptic::FeltHand felt;
         std::uint64_t number = 0;
         haptic::window_hand().felt.read(felt, number);
-        haptic::window_hand().wanted.write({{}, buttons, steady_ns(), 16'000'000, felt.run});
+        haptic::window_hand().wanted.write({at, buttons, steady_ns(), 16'000'000, felt.run});
     };
     REQUIRE(rig.comes([&] { return rig.run.is_holding(); }, 1000));
+    at.position.x = 5e-3;
     const std::size_t before = rig.run.steps().size();
     rig.alternatives.rename("main", "before");
     CHECK(rig.has_told("let the fragment go first"));
