@@ -79,7 +79,8 @@ double uses_of(const std::string& type) {
         return counts;
     }();
     const auto found = counted.find(type);
-    return found == counted.end() ? 0.0 : found->second;
+    // One or two nodes are no habit.
+    return found == counted.end() ? 0.0 : std::max(0, found->second - 2);
 }
 
 }  // namespace
