@@ -89,7 +89,7 @@ void PatchPanel::notice_new_plan() {
     // Indices refer to the previous picture.
     wiring_ = {};
     hovered_ = menu_ = {};
-    // A fitted view stays fitted, but not while somebody points at a node of it.
+    // A fitted view stays fitted; what somebody points at stays where it is if all can still be seen.
     if (!under_.empty()) keep_under_pointer();
     else if (follows_size_) fits_ = false;
     plan_version_ = bench_.plan_version();
@@ -106,8 +106,14 @@ void PatchPanel::keep_under_pointer() {
     const int index = bench_.picture().find(std::exchange(under_, {}));
     if (index < 0) return;
     const Box& box = bench_.picture().nodes[static_cast<std::size_t>(index)].box;
+    if (box.left == under_at_.x && box.top == under_at_.y) return;
     canvas_.origin = canvas_.origin + Point{box.left, box.top} - under_at_;
-    if (box.left != under_at_.x || box.top != under_at_.y) follows_size_ = false;
+    // Where a part of a patch that was seen as a whole would leave the view, the whole is shown again.
+    const Box all = screen(bench_.picture().bounds);
+    const bool is_whole = all.left >= corner_.x && all.top >= corner_.y && all.right <= corner_.x + width_ &&
+                          all.bottom <= corner_.y + height_;
+    if (follows_size_ && !is_whole) fits_ = false;
+    else follows_size_ = false;
 }
 
 /// The status changes several times a second, and a patch can have ten thousand nodes.
