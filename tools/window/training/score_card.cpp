@@ -57,8 +57,8 @@ ScoreCard card_of(const analysis::ScoredRun& run) {
     const training::TaskLimits& limits = run.task.limits;
     ScoreCard card;
     card.task = fmt::format("{:016x}", run.task.hash);
-    const auto add = [&](const std::string& name, const char* unit, double value, std::optional<double> limit = std::nullopt,
-                         Better better = Better::less) {
+    const auto add = [&](const std::string& name, const char* unit, double value,
+                         std::optional<double> limit = std::nullopt, Better better = Better::less) {
         card.rows.push_back({name, unit, value, limit, better, {}, limit && value > *limit});
     };
     add("time", "s", s.seconds, limits.time);
@@ -86,8 +86,7 @@ ScoreCard card_of(const analysis::ScoredRun& run) {
     const auto severed = std::ranges::count_if(run.severances, &training::Severance::severed);
     if (run.severances.size() > 1)
         card.notes.push_back(fmt::format("{} of {} cuts go through the bone", severed, run.severances.size()));
-    else if (severed > 0)
-        card.notes.push_back("the bone is sawn through");
+    else if (severed > 0) card.notes.push_back("the bone is sawn through");
     if (s.shown_share && *s.shown_share < analysis::complete_share)
         card.notes.push_back(
             fmt::format("the bone was felt in only {:.0f} % of the time of contact, as forces were "

@@ -166,8 +166,8 @@ TEST_CASE("mpirun runs a sweep by rank, through a killed rank", "[kernel][long]"
     const fs::path file = folder.write("sweep.toml", two_hundred_points("sleep 0.02; "));
     REQUIRE(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "local")).code == 0);
     REQUIRE(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --dry-run").code == 0);
-    const std::string mpirun =
-        fmt::format("mpirun --allow-run-as-root --oversubscribe -n 4 {} sweep work {}", tactus::test::command(), in(folder, "a"));
+    const std::string mpirun = fmt::format("mpirun --allow-run-as-root --oversubscribe -n 4 {} sweep work {}",
+                                           tactus::test::command(), in(folder, "a"));
     const pid_t background = ::fork();
     if (background == 0) {
         ::execl("/bin/sh", "sh", "-c", ("exec " + mpirun + " >" + in(folder, "first.txt") + " 2>&1").c_str(), nullptr);

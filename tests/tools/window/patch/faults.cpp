@@ -135,9 +135,9 @@ TEST_CASE("a sub-patch with errors is one node at fault, and the rest of the pat
     folder.write("part.toml",
                  "[outputs]\nout = \"tone.signal\"\n[nodes.tone]\ntype = \"sine\"\nrate = \"outer\"\nno = 1\n");
     Workbench bench(broken_choice(folder,
-                              "wires = [\"part.out -> half.in\"]\n[nodes.part]\ntype = \"patch:part.toml\"\n"
-                              "rate = \"48 kHz\"\n[nodes.half]\ntype = \"gain\"\nrate = \"48 kHz\"\n"
-                              "[nodes.alone]\ntype = \"sine\"\nrate = \"48 kHz\"\n"));
+                                  "wires = [\"part.out -> half.in\"]\n[nodes.part]\ntype = \"patch:part.toml\"\n"
+                                  "rate = \"48 kHz\"\n[nodes.half]\ntype = \"gain\"\nrate = \"48 kHz\"\n"
+                                  "[nodes.alone]\ntype = \"sine\"\nrate = \"48 kHz\"\n"));
     REQUIRE(bench.faults().size() == 1);
     CHECK(bench.faults()[0].node == "part");
     CHECK(bench.faults()[0].file.filename() == "part.toml");
