@@ -500,13 +500,14 @@ void judge_path(const ForceTrial& trial, const ClosedPath& path, ForceOutcome& o
         const std::size_t first = static_cast<std::size_t>(std::max(0, tick - 1)) * refined;
         const std::size_t window = tick == 0 ? 2 : 3;  // ticks
         const std::size_t last = std::min(first + window * refined * refined - 1, finer.forces.size() - 2);
-        // The hand slows down where the window begins: what a damper makes of that is no jump of the law.
-        for (std::size_t k = first + 1; k <= last; ++k) {
+        for (std::size_t k = std::max<std::size_t>(first, 1); k <= last; ++k) {
             const double force = glm::length(finer.change(k).force), torque = glm::length(finer.change(k).torque);
             const double now = std::max(force / min_jump, torque / min_turn);
             if (now <= 1.0 || now < 0.5 * excess) continue;
             // A powered tool breaks through, and a tool slips off an edge.
-            if ((finer.is_powered || !exception_of(trial, separates).empty()) &&
+            const bool slips =
+                !exception_of(trial, separates).empty() && finer.lags[k + 1] <= separation * finer.lags[k];
+            if ((finer.is_powered || slips) &&
                 glm::length(finer.forces[k + 1].force) < glm::length(finer.forces[k].force))
                 continue;
             outcome.jump_N = std::max(outcome.jump_N, force);
