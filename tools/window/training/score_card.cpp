@@ -124,4 +124,10 @@ std::string value_text(const ScoreRow& row) {
     return fmt::format("{:.{}f} {}", row.value, std::abs(row.value) < 100.0 ? 1 : 0, row.unit);
 }
 
+std::string value_beside_limit(const ScoreRow& row) {
+    if (!row.limit) return value_text(row);
+    if (row.better == ScoreRow::Better::more) return fmt::format("{}, at least {:.3g}", value_text(row), *row.limit);
+    return fmt::format("{:.1f} of {:.3g} {}", row.value, *row.limit, row.unit);
+}
+
 }  // namespace tactus::window

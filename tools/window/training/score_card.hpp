@@ -42,5 +42,7 @@ const ScoreRow* best_of(std::span<const ScoreCard> attempts, const ScoreCard& ca
 
 /// "2.3 s", "8 mm³".
 std::string value_text(const ScoreRow& row);
+/// "8.2 of 10 N"; "1.3 mm, at least 1" where more is better; without a limit as value_text().
+std::string value_beside_limit(const ScoreRow& row);
 
 }  // namespace tactus::window

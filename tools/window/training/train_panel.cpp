@@ -197,10 +197,16 @@ void TrainPanel::score_table(const Fonts& fonts) const {
     const ScoreCard* before = nullptr;
     for (const ScoreCard& other : earlier_)
         if (other.task == card.task) before = &other;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ImGui::GetStyle().ItemSpacing.x, 1.0f));
+    std::string never;  // in one line: a low window has no room for each
     for (const ScoreRow& row : card.rows) {
-        const std::string value = row.note.empty() ? value_text(row) : row.note;
-        const bool has_side = row.limit || row.name.starts_with('!');
-        const ImU32 ink = row.is_bad ? tone::bad : row.is_close() ? tone::warm : has_side ? tone::good : tone::text;
+        const bool is_warning = row.name.starts_with('!');
+        if (is_warning && !row.is_bad) {
+            never += (never.empty() ? "never " : ", ") + row.name.substr(2);
+            continue;
+        }
+        const std::string value = row.note.empty() ? value_beside_limit(row) : row.note;
+        const ImU32 ink = row.is_bad ? tone::bad : row.is_close() ? tone::warm : row.limit ? tone::good : tone::text;
         ImGui::TextDisabled("%s", row.name.c_str());
         ImGui::SameLine();
         const float wide = ImGui::CalcTextSize(value.c_str()).x;
@@ -210,23 +216,19 @@ void TrainPanel::score_table(const Fonts& fonts) const {
         ImGui::PushStyleColor(ImGuiCol_Text, ink);
         ImGui::TextUnformatted(value.c_str());
         ImGui::PopStyleColor();
-        std::string beside;
-        const auto add = [&](const std::string& words) { beside += (beside.empty() ? "" : ", ") + words; };
-        const bool is_told = !row.name.starts_with('!') || row.is_bad;
-        if (row.limit && is_told)
-            add(fmt::format("{} {:.3g} {}", row.better == ScoreRow::Better::more ? "at least" : "limit", *row.limit,
-                            row.unit));
-        if (before && is_told) {
-            if (const ScoreRow* last = before->row(row.name))
-                add("before " + (last->note.empty() ? value_text(*last) : last->note));
-            if (const ScoreRow* best = best_of(earlier_, card, row)) add("best " + value_text(*best));
-        }
-        if (beside.empty()) continue;
+        const ScoreRow* const last = before ? before->row(row.name) : nullptr;
+        if (!last) continue;
+        std::string beside = "  before " + (last->note.empty() ? value_text(*last) : last->note);
+        if (const ScoreRow* best = best_of(earlier_, card, row)) beside += ", best " + value_text(*best);
         ImGui::PushFont(fonts.small);
-        ImGui::TextDisabled("  %s", beside.c_str());
+        ImGui::TextDisabled("%s", beside.c_str());
         ImGui::PopFont();
     }
+    ImGui::PushFont(fonts.small);
+    if (!never.empty()) ImGui::TextWrapped("%s", never.c_str());
+    ImGui::PopFont();
     for (const std::string& note : card.notes) ImGui::TextWrapped("%s", note.c_str());
+    ImGui::PopStyleVar();
 }
 
 /// After the run: the score of an attempt at a task, or what the command would say.

@@ -52,6 +52,9 @@ TEST_CASE("a score has the limits of its task, and every warning that stood live
     // No limit, no warning.
     CHECK(card.row("! too hot") == nullptr);
     CHECK(value_text(*card.row("time")) == "20.0 s");
+    CHECK(value_beside_limit(*card.row("time")) == "20.0 of 30 s");
+    CHECK(value_beside_limit(*card.row("nerve")) == "0.5 mm, at least 1");
+    CHECK(value_beside_limit(*card.row("cut too much")) == "0.0 mm³");
 }
 
 TEST_CASE("the best of earlier attempts is that of the same task, less time and more distance to what is spared") {
