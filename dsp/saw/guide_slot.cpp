@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tactus::saw {
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double fade_time = 0.05;  // s
 constexpr double entry = 0.3e-3;  // m by which a blade may miss the slot that it enters; it keeps that room
+constexpr double ledge_reach = 3e-3;  // m from a ledge within which it holds a blade
 constexpr double rounding = 1e-9;  // m
 constexpr double taken_over = 0.1e-3;  // m of the hand's spring over which a wall takes over the force on the blade
 constexpr double min_upright = 0.5;  // cosine of the angle beyond which a blade is in no slot
@@ -118,9 +120,13 @@ const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand,
         const auto n = static_cast<std::size_t>(slot_);
         if (n < slots.size())
             if (const Pose local = local_of(slots[n]); is_upright(local)) count = overlap(slots[n], local, corners_);
+        if (count > 0) {
+            place(slots[n].frame, hand);
+            if (apart(slots[n], std::span(corners_).first(count)) > ledge_reach) count = 0;
+        }
         if (count == 0) {
             slot_ = -1;
-            left_ = fade_time;
+            left_ = offset_ == Vec3(0.0) ? 0.0 : fade_time;
         }
     }
     if (slot_ < 0) {
@@ -131,19 +137,26 @@ const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand,
         offset_ = Vec3(0.0);
         active_count_ = 0;
         guided_ = hand;
+        double nearest = ledge_reach;
         for (std::size_t n = 0; n < slots.size(); ++n) {
             const Pose local = local_of(slots[n]);
             if (!is_upright(local)) continue;
-            count = overlap(slots[n], local, corners_);
-            if (count == 0) continue;
-            slot_ = static_cast<int>(n);
-            frame_ = slots[n].frame;
+            std::array<Corner, max_corners> corners;
+            const std::size_t found = overlap(slots[n], local, corners);
+            if (found == 0) continue;
             place(slots[n].frame, hand);
-            room_ = miss(slots[n], std::span(corners_).first(count));
-            if (room_ <= entry) break;
-            slot_ = -1;
+            const std::span<const Corner> region = std::span(corners).first(found);
+            const double missed = miss(slots[n], region), away = apart(slots[n], region);
+            if (missed > entry || away > nearest || (slot_ >= 0 && away == nearest)) continue;
+            nearest = away;
+            slot_ = static_cast<int>(n);
+            count = found;
+            corners_ = corners;
+            // A free blade has the play of the slot and no more.
+            room_ = std::max(0.0, missed);
         }
         if (slot_ < 0) return guided_;
+        frame_ = slots[static_cast<std::size_t>(slot_)].frame;
     }
     const GuideSlot& slot = slots[static_cast<std::size_t>(slot_)];
     place(slot.frame, hand);
@@ -183,6 +196,14 @@ double SlotHold::miss(const GuideSlot& slot, std::span<const Corner> corners) co
         most = std::max({most, low - z, z - high});
     }
     return most;
+}
+
+double SlotHold::apart(const GuideSlot& slot, std::span<const Corner> corners) const noexcept {
+    if (std::isfinite(slot.other_wall)) return 0.0;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Corner& corner : corners)
+        least = std::min(least, plane_[0] + plane_[1] * (corner.x - clamp_x_) + plane_[2] * (corner.y - clamp_y_));
+    return std::max(0.0, least - bounds(slot)[0]);
 }
 
 void SlotHold::solve(const GuideSlot& slot, std::span<const Corner> corners) noexcept {

@@ -19,7 +19,8 @@ struct GuideSlot {
     double low = -0.010, high = 0.010;  ///< m along x: ends of the walls
     double top = -0.015, bottom = 0.0;  ///< m along y: mouth, and the end near the bone
     double wall = -0.5e-3;  ///< m along z: one wall
-    double other_wall = 1.0e-3;  ///< m along z: the other one, greater than `wall`; infinite: a ledge
+    /// m along z: the other one, greater than `wall`; infinite: a ledge, which holds a blade within 3 mm of it.
+    double other_wall = 1.0e-3;
 };
 
 struct SlotSettings {
@@ -41,8 +42,8 @@ public:
     SlotHold() = default;
     SlotHold(const SawShape& shape, const SlotSettings& settings);
 
-    /// One tick of `dt` s. A slot holds the blade from when it is entered, with the blade between its walls, until no part
-    /// of the blade is left between them. Its force then fades over 50 ms. Without slots, a slot that holds the blade lets
+    /// One tick of `dt` s. The nearest slot holds the blade from when it is entered, with the blade between its walls, until
+    /// no part of the blade is left between them. Its force then fades over 50 ms. Without slots, a slot that holds the blade lets
     /// it go in the same way. Allocates nothing.
     const Pose& follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept;
     /// The hand jumped: without a fade.
@@ -82,6 +83,8 @@ private:
     std::array<double, 2> bounds(const GuideSlot& slot) const noexcept;
     /// m by which the blade of the hand passes the walls; negative: it is free.
     double miss(const GuideSlot& slot, std::span<const Corner> corners) const noexcept;
+    /// m between the blade of the hand and a ledge; 0 between two walls.
+    double apart(const GuideSlot& slot, std::span<const Corner> corners) const noexcept;
 
     SawShape shape_;
     SlotSettings settings_;

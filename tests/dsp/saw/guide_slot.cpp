@@ -178,6 +178,44 @@ TEST_CASE("a blade that a slot holds never passes its walls, wherever the hand g
     CHECK(touched > 50);
 }
 
+TEST_CASE("a blade that entered a slot with play feels nothing within the walls and the wall where it is") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    for (const double entered : {0.0, 0.1, 0.25, 0.4, 0.5}) {
+        saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+        const auto at = [&](double aside) {
+            hold.follow(slots, {Vec3(0.0, aside, 5.0 * mm), teeth_down}, 1e-3);
+            return glm::length(hold.on_hand({}).force);
+        };
+        CAPTURE(entered);
+        CHECK(at(entered * mm) == 0.0);
+        REQUIRE(hold.slot() == 0);
+        for (double aside = 0.0; aside <= 0.5; aside += 0.05) CHECK(at(aside * mm) < 1e-6);
+        CHECK(at(0.6 * mm) == Approx(1.0).epsilon(1e-3));
+        CHECK(at(-0.1 * mm) == Approx(1.0).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a ledge is reached from afar without a force, and lets the blade go on to the next slot") {
+    const saw::SawShape shape = guided_blade();
+    saw::GuideSlot ledge = slot_above(), slot = slot_above();
+    ledge.other_wall = infinity;
+    slot.frame.position.y = 20.0 * mm;
+    // The list puts the ledge first: the slot is nearer all the same.
+    const std::vector<saw::GuideSlot> slots{ledge, slot};
+    saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+    const auto at = [&](double aside) {
+        hold.follow(slots, {Vec3(0.0, aside, 5.0 * mm), teeth_down}, 1e-3);
+        return glm::length(hold.on_hand({}).force);
+    };
+    for (double aside = 8.0; aside >= 0.0; aside -= 0.1) CHECK(at(aside * mm) < 1e-6);
+    CHECK(hold.slot() == 0);
+    CHECK(at(-0.1 * mm) == Approx(1.0).epsilon(1e-3));
+    for (double aside = 0.0; aside <= 20.2; aside += 0.1) CHECK(at(aside * mm) < 1e-6);
+    CHECK(hold.slot() == 1);
+    CHECK(at(20.6 * mm) == Approx(1.0).epsilon(1e-3));
+}
+
 TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
     const saw::SawShape shape = guided_blade();
     const std::vector<saw::GuideSlot> slots{slot_above()};
