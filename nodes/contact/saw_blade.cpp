@@ -16,6 +16,7 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace tactus::nodes {
 
@@ -62,8 +63,8 @@ struct SawBlade {
                     "upper bound of the stiffness that the hand feels, for any number of points in contact; times "
                     "'device_scale' at most 40 N/mm"};
     Asset<training::Task> guide{optional,
-                                "task whose guide stops the blade, which never cuts it, and whose slots hold it"};
-    Param guide_stiffness{structural, "10 N/mm", "0.01 N/mm", "50 N/mm",
+                                "task whose guide stops the blade (the guide is never cut) and whose slots hold it"};
+    Param guide_stiffness{structural, "10 N/mm", "0.01 N/mm", "40 N/mm",
                           "of the hand's spring against the walls of a slot; the blade itself never leaves the slot"};
     Param device_scale{
         "1", "0.01", "10",
@@ -91,12 +92,13 @@ struct SawBlade {
     }
 
     void prepare(const Setup& setup) {
-        // Teeth know the bone to 0.15 of a voxel, 0.08 mm of 0.5 mm: on a stiffer tool that is a jump of more than 3 N.
-        if (stiffness * device_scale > max_felt_stiffness)
-            setup.fail(
-                fmt::format("the hand would feel {:.3g} N/mm, 'stiffness' times 'device_scale', and in it the "
-                            "voxels of the bone as jumps; at most {:.3g} N/mm",
-                            stiffness * device_scale * 1e-3, max_felt_stiffness * 1e-3));
+        // Teeth resolve 0.15 of a voxel (0.08 mm at 0.5 mm): on a stiffer tool the force would step by over 3 N.
+        for (const auto& [name, given] : {std::pair{"stiffness", &stiffness}, {"guide_stiffness", &guide_stiffness}})
+            if ((given == &stiffness || guide) && *given * device_scale > max_felt_stiffness)
+                setup.fail(
+                    fmt::format("the hand would feel {:.3g} N/mm, '{}' times 'device_scale', and in it the voxels "
+                                "of the bone as jumps; at most {:.3g} N/mm",
+                                *given * device_scale * 1e-3, name, max_felt_stiffness * 1e-3));
         saw::SawShape shape;
         shape.kind = sagittal ? saw::SawKind::sagittal : saw::SawKind::reciprocating;
         shape.length = length;
@@ -121,6 +123,7 @@ struct SawBlade {
                 "a sagittal blade swings about an axis {:.3g} mm behind its teeth, too near for {:.3g} mm of "
                 "teeth and their stroke; lengthen 'height'",
                 shape.height * 1e3, shape.length * 1e3));
+        max_scale_ = max_felt_stiffness / (guide ? std::max<double>(stiffness, guide_stiffness) : stiffness);
         law_ = saw::CuttingLaw{}.with_edge(kerf).sharpened(sharpness);
         blade_.emplace(shape, stiffness);
         hold_ = saw::SlotHold(shape, {.stiffness = guide_stiffness, .thickness = kerf});
@@ -155,8 +158,9 @@ struct SawBlade {
                 pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get()) || !is_seated()};
         const Pose at = guided(drive);
         const saw::SawContact now = blade_->step(bone.get(), at, drive, law_, guide_body_ ? &guide_now_ : nullptr);
-        wrench = hold_.on_hand(now.wrench) * std::min<double>(device_scale, max_felt_stiffness / stiffness);
-        // With the guide in the hand there is no saw in it: nothing that the blade would pass is injured.
+        // 'device_scale' can be changed while the patch runs.
+        wrench = hold_.on_hand(now.wrench) * std::min<double>(device_scale, max_scale_);
+        // While the hand holds the guide it holds no saw, so the blade injures nothing.
         is_in_hand_ = is_in_hand_ || (is_seated() && now.state == saw::HoldState::engaged);
         held = is_in_hand_ ? at : Pose{at.position - at.rotate(Vec3(0.0, laid_aside, 0.0)), at.orientation};
         slot = hold_.slot() + 1;
@@ -220,7 +224,7 @@ private:
     static constexpr double laid_aside = 0.1;  // m
     Pose last_pose_;
     bool is_in_hand_ = true;
-    double max_guide_force_ = 0.0;
+    double max_guide_force_ = 0.0, max_scale_ = 1.0;
     Notice waits_{tool_waits}, released_{tool_released};
     saw::HoldState last_state_ = saw::HoldState::engaged;
 };

@@ -6,6 +6,7 @@
 #include "tests/support/node_harness.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 using namespace tactus;
@@ -78,6 +79,26 @@ TEST_CASE("the forces on a device are scaled, and the forces that cut are not") 
         CHECK(load[1] == load[0]);
         CHECK(force[1] == Approx(0.25 * force[0]));
     }
+}
+
+TEST_CASE("a saw that would feel stiffer than 40 N per mm is refused, and a scale that is set later is cut off there") {
+    const auto bone = bone_block({.voxel = 0.5e-3});
+    const auto saw = [&](const char* scale) {
+        auto node = std::make_unique<NodeHarness>("saw_blade", servo);
+        node->disconnect_optional();
+        node->feed<Pose>("pose", press).feed("bone", bone->current());
+        node->set("stiffness", "20 N/mm").set("device_scale", scale);
+        return node;
+    };
+    CHECK_THROWS_WITH(saw("2.1")->prepare(), Catch::Matchers::ContainsSubstring("at most 40 N/mm"));
+    const auto allowed = saw("2"), later = saw("1");
+    allowed->prepare();
+    later->prepare();
+    later->set("device_scale", "10");
+    allowed->run(600);
+    later->run(600);
+    CHECK(later->last<Wrench>("wrench").force.z == Approx(allowed->last<Wrench>("wrench").force.z));
+    CHECK(later->last<Wrench>("wrench").force.z > 1.0);
 }
 
 TEST_CASE("a tool that begins in bone says that it waits") {
