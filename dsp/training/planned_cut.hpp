@@ -48,20 +48,19 @@ struct PlannedCut {
     Mat3 axes() const noexcept { return {stroke, feed, normal}; }
 };
 
-/// Index of the cut whose plane is nearest to a point; at least one cut. A plane counts within 30 mm of its entry, as others
-/// of the same bone may cross it farther away.
-inline std::size_t nearest_cut(std::span<const PlannedCut> cuts, const Vec3& p) noexcept {
+/// m from a point to a planned cut. A plane counts within 30 mm of its entry, as others of the same bone may cross it farther
+/// away.
+inline double distance_to_cut(const PlannedCut& cut, const Vec3& p) noexcept {
     constexpr double wide = 30e-3;  // m
+    const Vec3 at = cut.coordinates(p);
+    return std::hypot(at.z, std::max(0.0, std::hypot(at.x, at.y) - wide));
+}
+
+/// Index of the cut whose plane is nearest to a point; at least one cut.
+inline std::size_t nearest_cut(std::span<const PlannedCut> cuts, const Vec3& p) noexcept {
     std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < cuts.size(); ++n) {
-        const Vec3 at = cuts[n].coordinates(p);
-        const double away = std::hypot(at.z, std::max(0.0, std::hypot(at.x, at.y) - wide));
-        if (away < least) {
-            least = away;
-            nearest = n;
-        }
-    }
+    for (std::size_t n = 1; n < cuts.size(); ++n)
+        if (distance_to_cut(cuts[n], p) < distance_to_cut(cuts[nearest], p)) nearest = n;
     return nearest;
 }
 
@@ -69,6 +68,20 @@ inline std::size_t nearest_cut(std::span<const PlannedCut> cuts, const Vec3& p) 
 inline double angle_between_planes(const Vec3& a, const Vec3& b) noexcept {
     // atan2 keeps small angles exact, where acos loses half of the digits.
     return std::atan2(glm::length(glm::cross(a, b)), std::abs(glm::dot(a, b)));
+}
+
+/// Index of the cut that a blade makes; at least one cut. Where two planes cross, its angle decides: by an angle its parts
+/// are as far from the plane as the angle times 10 mm.
+inline std::size_t nearest_cut(std::span<const PlannedCut> cuts, const Pose& blade) noexcept {
+    constexpr double lever = 10e-3;  // m
+    const Vec3 normal = blade.rotate(Vec3(0.0, 0.0, 1.0));
+    const auto away = [&](const PlannedCut& cut) {
+        return distance_to_cut(cut, blade.position) + lever * angle_between_planes(cut.normal, normal);
+    };
+    std::size_t nearest = 0;
+    for (std::size_t n = 1; n < cuts.size(); ++n)
+        if (away(cuts[n]) < away(cuts[nearest])) nearest = n;
+    return nearest;
 }
 
 /// A blade against the plan.

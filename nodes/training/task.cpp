@@ -89,7 +89,7 @@ struct Task {
     void process(const Tick& tick) noexcept {
         const training::Task& t = *task_;
         if (is_valid(pose.get()) && glm::length(pose->position) < 1e3) at_ = pose.get();
-        const training::PlannedCut& cut = t.cuts[training::nearest_cut(t.cuts, at_.position)];
+        const training::PlannedCut& cut = t.cuts[training::nearest_cut(t.cuts, at_)];
         const training::CutDeviation now = training::deviation_of(cut, t.blade, at_);
         double least = 1.0, margin_left = 1.0;
         for (const training::SparedStructure& s : t.spared) {

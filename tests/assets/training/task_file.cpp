@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <cmath>
 #include <filesystem>
@@ -153,6 +154,16 @@ TEST_CASE("a task has several cuts, each with its slot of a guide") {
     CHECK(std::isinf(task.slots[1].other_wall));
     CHECK(training::nearest_cut(task.cuts, Vec3(3 * mm, -5 * mm, 0.0)) == 0);
     CHECK(training::nearest_cut(task.cuts, Vec3(18 * mm, -5 * mm, 0.0)) == 1);
+    // Where the planes of a wedge cross, the angle of the blade says which cut it makes.
+    std::vector<training::PlannedCut> wedge(2);
+    wedge[1].normal = glm::normalize(Vec3(0.0, 1.0, 0.3));
+    wedge[1].feed = glm::cross(wedge[1].normal, wedge[1].stroke);
+    const auto blade = [&](const training::PlannedCut& cut) {
+        return Pose{cut.position(0.0, 0.0, 0.2 * mm), glm::quat_cast(cut.axes())};
+    };
+    CHECK(training::nearest_cut(wedge, blade(wedge[0])) == 0);
+    CHECK(training::nearest_cut(wedge, blade(wedge[1])) == 1);
+    CHECK(training::nearest_cut(wedge, Pose{wedge[1].position(0.0, 0.0), glm::quat_cast(wedge[0].axes())}) == 0);
 
     CHECK_THAT(task_refusal(with(text(slot, slot), "top = \"15 mm\"", "top = \"-3 mm\"")),
                ContainsSubstring("the mouth of the slot is not above its lower end"));

@@ -147,7 +147,7 @@ std::array<double, training::warning_count> warning_times(const training::Task& 
         const training::AttemptSample& s = samples[n];
         if (s.contact && !touched) touched = s.time;
         training::AttemptState now;
-        const training::PlannedCut& cut = task.cuts[training::nearest_cut(task.cuts, s.pose.position)];
+        const training::PlannedCut& cut = task.cuts[training::nearest_cut(task.cuts, s.pose)];
         now.deviation = training::deviation_of(cut, task.blade, s.pose);
         for (const training::SparedStructure& spared : task.spared)
             now.margin_left =
@@ -165,16 +165,22 @@ std::array<double, training::warning_count> warning_times(const training::Task& 
     return times;
 }
 
-/// Samples of the blade at each cut.
-std::vector<std::vector<training::AttemptSample>> by_cut(const ScoredRun& run) {
-    std::vector<std::vector<training::AttemptSample>> samples(run.task.cuts.size());
-    for (const training::AttemptSample& s : run.samples)
-        samples[training::nearest_cut(run.task.cuts, s.pose.position)].push_back(s);
-    return samples;
+using Stretches = std::vector<std::span<const training::AttemptSample>>;
+
+/// The stretches of a run in which the blade was at each cut, without gaps.
+std::vector<Stretches> by_cut(const ScoredRun& run) {
+    std::vector<Stretches> stretches(run.task.cuts.size());
+    const std::span<const training::AttemptSample> all = run.samples;
+    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+        const std::size_t cut = training::nearest_cut(run.task.cuts, all[begin].pose);
+        while (end < all.size() && training::nearest_cut(run.task.cuts, all[end].pose) == cut) ++end;
+        stretches[cut].push_back(all.subspan(begin, end - begin));
+    }
+    return stretches;
 }
 
 CutScore score_cut(ScoredRun& run, const training::PlannedCut& cut, const training::CutBone& bone,
-                   const std::vector<training::AttemptSample>& samples) {
+                   const Stretches& stretches) {
     const training::BladeSize& blade = run.task.blade;
     CutScore score;
     score.name = cut.name;
@@ -191,10 +197,12 @@ CutScore score_cut(ScoredRun& run, const training::PlannedCut& cut, const traini
     if (plane->angle) score.angle_deg = *plane->angle / degree;
     run.severances.back() = training::severance_of(bone, cut, *plane, 0.5 * (blade.length + blade.stroke));
     if (!run.severances.back().severed) return score;
-    if (const auto through = training::breakthrough_of(samples, cut, blade, run.severances.back())) {
-        score.breakthrough_mm = through->depth * 1e3;
-        score.breakthrough_mm_per_s = through->speed * 1e3;
-    }
+    for (const auto& stretch : stretches)
+        if (const auto through = training::breakthrough_of(stretch, cut, blade, run.severances.back())) {
+            score.breakthrough_mm = through->depth * 1e3;
+            score.breakthrough_mm_per_s = through->speed * 1e3;
+            break;
+        }
     return score;
 }
 
@@ -202,7 +210,7 @@ CutScore score_cut(ScoredRun& run, const training::PlannedCut& cut, const traini
 void score_cuts(ScoredRun& run) {
     const std::vector<training::PlannedCut>& cuts = run.task.cuts;
     const training::CutBone bone{run.before.distance, run.after.distance};
-    const auto samples = by_cut(run);
+    const auto stretches = by_cut(run);
     Score& all = run.score;
     const auto greatest = [](std::optional<double>& to, const std::optional<double>& one) {
         if (one) to = std::max(to.value_or(*one), *one);
@@ -210,7 +218,7 @@ void score_cuts(ScoredRun& run) {
     double squares = 0.0, points = 0.0, jerk = 0.0, jerks = 0.0;
     for (std::size_t n = 0; n < cuts.size(); ++n) {
         const volume::Grid after = training::after_one_cut(bone, cuts, n);
-        const CutScore one = score_cut(run, cuts[n], {run.before.distance, after}, samples[n]);
+        const CutScore one = score_cut(run, cuts[n], {run.before.distance, after}, stretches[n]);
         all.over_mm3 += one.over_mm3;
         all.under_mm3 += one.under_mm3;
         greatest(all.max_mm, one.max_mm);
@@ -223,11 +231,14 @@ void score_cuts(ScoredRun& run) {
             points += count;
         }
         all.cuts.push_back(one);
-        if (cuts.size() == 1 || samples[n].empty()) continue;
-        const training::MotionMeasures motion =
-            training::motion_of(samples[n], cuts[n], std::numeric_limits<double>::infinity());
-        all.strokes += motion.strokes;
-        if (motion.jerk) jerk += *motion.jerk, ++jerks;
+        if (cuts.size() == 1) continue;
+        for (const auto& stretch : stretches[n]) {
+            const training::MotionMeasures motion =
+                training::motion_of(stretch, cuts[n], std::numeric_limits<double>::infinity());
+            all.strokes += motion.strokes;
+            // A longer stretch counts for more.
+            if (motion.jerk) jerk += motion.contact * *motion.jerk, jerks += motion.contact;
+        }
     }
     if (points > 0.0) all.rms_mm = cuts.size() == 1 ? all.cuts.front().rms_mm : std::sqrt(squares / points);
     if (jerks > 0.0) all.jerk = jerk / jerks;

@@ -166,7 +166,7 @@ display::Figure draw_attempt(const analysis::ScoredRun& run) {
         // All forces, so that no peak is left out; the rest thinned.
         force.push_back({s.time, pressed});
         if (n % every != 0) continue;
-        const training::PlannedCut& nearest = task.cuts[training::nearest_cut(task.cuts, s.pose.position)];
+        const training::PlannedCut& nearest = task.cuts[training::nearest_cut(task.cuts, s.pose)];
         const training::CutDeviation now = training::deviation_of(nearest, task.blade, s.pose);
         depth.push_back({s.time, now.depth * 1e3});
         deepest = std::max(deepest, now.depth);
