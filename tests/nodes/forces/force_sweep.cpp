@@ -508,7 +508,8 @@ void judge_path(const ForceTrial& trial, const ClosedPath& path, ForceOutcome& o
             const bool slips =
                 !exception_of(trial, separates).empty() && finer.lags[k + 1] <= separation * finer.lags[k];
             if ((finer.is_powered || slips) &&
-                glm::length(finer.forces[k + 1].force) < glm::length(finer.forces[k].force))
+                glm::length(finer.forces[k + 1].force) < glm::length(finer.forces[k].force) &&
+                (finer.is_powered || glm::length(finer.forces[k + 1].torque) <= glm::length(finer.forces[k].torque)))
                 continue;
             outcome.jump_N = std::max(outcome.jump_N, force);
             outcome.jump_Nm = std::max(outcome.jump_Nm, torque);
