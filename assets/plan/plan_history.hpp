@@ -20,7 +20,7 @@ public:
     static constexpr std::size_t max_alternatives = 32;
     /// Of more dropped alternatives the oldest cannot be restored.
     static constexpr std::size_t max_dropped = 32;
-    /// A smaller motion is none: a fragment that is grasped and released makes no step.
+    /// Smaller motions are ignored: grasping and releasing a fragment adds no step.
     static constexpr double min_distance = 1e-6;  ///< m, of the origin of the fragment's file
     static constexpr double min_angle = 1e-6;     ///< rad
 
@@ -29,7 +29,7 @@ public:
 
     enum class Outcome : std::uint8_t {
         done,
-        unchanged,  ///< everything is already as the command wants it
+        unchanged,  ///< the command would change nothing
         locked,  ///< a locked fragment moves together with the one to be moved
         no_such_fragment,
         nothing_to_undo,

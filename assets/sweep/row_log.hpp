@@ -40,7 +40,7 @@ std::string row_line(const Row& row);
 /// Throws Error for other texts.
 Row read_row(std::string_view line);
 
-/// What the fixed begin of a row's line states; reading it costs a tenth of reading the row.
+/// Fixed-length head of a row's line; parsing it costs a tenth of parsing the row.
 struct RowHead {
     std::uint64_t point = 0, output = 0;
     bool is_ok = false;

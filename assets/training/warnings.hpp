@@ -30,7 +30,7 @@ struct AttemptState {
     double heat_s = -1.0;  ///< above the temperature that harms bone; negative: unknown
 };
 
-/// Which warnings stand; `cut`: the one that the blade is at. Called in a tick: allocates nothing.
+/// Active warnings. `cut`: the cut nearest to the blade. Called in a tick: allocates nothing.
 inline std::array<bool, warning_count> warnings_of(const TaskFile& task, const PlannedCut& cut,
                                                    const AttemptState& now) noexcept {
     const TaskLimits& limits = task.limits;

@@ -272,7 +272,7 @@ void ToolBody::unhook(const Field& field, BodyPoint& p, double voxel) const noex
         const double there = field.value(to);
         return there >= rough || there >= field.value(p.at);
     };
-    // As far back as it may, to a thousandth of the way: a coarser search would let go of it in steps.
+    // As far back as allowed, to a thousandth of the distance: a coarser search would release the ball in force steps.
     double inside = 1.0, free = 0.0;
     if (may_be_at(p.at + axes_[1] * back)) free = 1.0;
     for (int halving = 0; halving < 10 && free < 1.0; ++halving) {

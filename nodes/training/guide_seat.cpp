@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/task_asset.hpp"
@@ -14,11 +16,10 @@ namespace tactus::nodes {
 
 struct GuideSeat {
     static constexpr auto about =
-        "The cutting guide of a task in the hand: put on the bone against the direction in which it is taken off, it "
-        "is "
-        "drawn to its seat when it comes near, and stays there. A coupling makes its contact: wire 'held', 'grip', "
-        "'target', 'near', 'holding' and 'strength' to it, and its pose back as delay 1. Without a guide it is seated "
-        "at once.";
+        "Seats a held cutting guide on the bone. Within 'reach' and 'reach_angle' of its seat the guide is pulled to "
+        "it; after 'dwell' within both tolerances it is fixed there and the hand is free for the saw. Wire 'held', "
+        "'grip', 'target', 'near', 'holding' and 'strength' to a coupling, and the coupling's pose back as delay 1. "
+        "Without a guide, 'seated' is always true.";
 
     In<Pose> hand{"pose of the hand in the scene: plan_frame.placed", "m"};
     In<Pose> moved{"of the held guide: coupling.pose as delay 1", "m"};
@@ -35,14 +36,14 @@ struct GuideSeat {
     Out<double> distance{"of the guide from its seat", "m"};
     Out<double> angle{"between the guide and its seat", "rad"};
     Asset<training::Task> task{"the task"};
-    Param lift{structural, "20 mm", "0 mm", "200 mm", "from the seat to where the hand has the guide at first"};
+    Param lift{structural, "20 mm", "0 mm", "200 mm", "height of the guide above its seat at the start"};
     Param spacing{structural, "1 mm", "0.3 mm", "10 mm", "of the points of the guide that touch bone"};
-    Param reach{"4 mm", "0 mm", "50 mm", "distance from which on the guide is drawn to its seat"};
-    Param reach_angle{"10 deg", "0 deg", "90 deg", "angle from which on it is"};
+    Param reach{"4 mm", "0 mm", "50 mm", "the guide is pulled to its seat below this distance"};
+    Param reach_angle{"10 deg", "0 deg", "90 deg", "and below this angle to the seat"};
     Param tolerance{"0.5 mm", "0.01 mm", "10 mm", "distance from the seat that counts as seated"};
-    Param angle_tolerance{"1 deg", "0.05 deg", "45 deg", "angle that does"};
-    Param dwell{"0.3 s", "0 s", "10 s", "how long"};
-    Param fade{"100 ms", "1 ms", "10 s", "time in which the force on the hand fades afterwards"};
+    Param angle_tolerance{"1 deg", "0.05 deg", "45 deg", "angle to the seat that counts as seated"};
+    Param dwell{"0.3 s", "0 s", "10 s", "time within both tolerances until the guide is seated"};
+    Param fade{"100 ms", "1 ms", "10 s", "fade time of the force on the hand after seating"};
 
     void prepare(const Setup& setup) {
         parts_.reset();
@@ -89,8 +90,8 @@ struct GuideSeat {
         if (!parts_) return;
         report.set("guide", "seated", seated_ ? 1.0 : 0.0);
         report.set("guide", "seated_at_s", seated_at_);
-        report.set("guide", "distance_mm", (seated_ ? last_away_ : away()) * 1e3);
-        report.set("guide", "angle_deg", (seated_ ? last_turned_ : turned()) * 57.29577951308232);
+        report.set("guide", "distance_mm", (seated_ ? last_away_ : away()) / mm);
+        report.set("guide", "angle_deg", (seated_ ? last_turned_ : turned()) / degree);
     }
 
 private:
@@ -99,10 +100,7 @@ private:
         return {seat_.position + lift.value * task->guide->removal, seat_.orientation};
     }
     double away() const noexcept { return glm::length(at_.position - seat_.position); }
-    double turned() const noexcept {
-        const double cosine = std::min(1.0, std::abs(glm::dot(at_.orientation, seat_.orientation)));
-        return 2.0 * std::acos(cosine);
-    }
+    double turned() const noexcept { return glm::length(rotation_between(seat_.orientation, at_.orientation)); }
 
     void publish() noexcept {
         if (parts_) body = parts_->body();

@@ -39,7 +39,7 @@ CutsOfPieces cut_as_placed(const std::filesystem::path& path, const std::string&
     for (const FlapStudy::SegmentPlace& segment : study.segments()) {
         found.segments.push_back(plan.fragments[static_cast<std::size_t>(segment.fragment)].name);
         if (!segment.is_placed)
-            throw Error(fmt::format("'{}' lies in the leg still; 'tactus plan redo' or 'tactus plan move' places it",
+            throw Error(fmt::format("'{}' is still in the leg; place it with 'tactus plan redo' or 'tactus plan move'",
                                     found.segments.back()));
         placed.push_back(segment.pose);
     }

@@ -385,7 +385,7 @@ private:
     }
 
     /// A scheduler ends a job by SIGTERM to all of its processes, in no particular order: a point that met it did not
-    /// fail, it was never finished.
+    /// fail; it stays unfinished.
     bool is_being_ended(const Row& row) const {
         if (!is_stopped() && row.reason.find("signal 15") != std::string::npos)
             std::this_thread::sleep_for(std::chrono::milliseconds(100));

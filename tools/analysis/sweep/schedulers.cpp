@@ -152,7 +152,7 @@ std::size_t elements_in_slurm(const std::string& id) {
     try {
         states = output_of({"squeue", "--noheader", "--array", "--jobs", id, "--format=%T"});
     } catch (const Error& error) {
-        // Slurm forgets jobs that ended some minutes ago.
+        // Slurm purges ended jobs after MinJobAge (default: 5 minutes).
         if (std::string_view(error.what()).find("Invalid job id") != std::string_view::npos) return 0;
         throw;
     }

@@ -113,7 +113,7 @@ SweepFolder::SweepFolder(const fs::path& file, const fs::path& folder, const fs:
     std::error_code failure;
     if (is_sweep_folder(path_)) before = read_state(path_);
     else if (fs::exists(path_, failure) && !fs::is_empty(path_, failure))
-        throw Error(fmt::format("{}: is not empty and no sweep; choose another folder", path_.string()));
+        throw Error(fmt::format("{}: is neither empty nor a sweep; choose another folder", path_.string()));
     sweep_ = sweep::load_sweep(file, {}, library);
     const Json* files = before.find("files");
     KnownHashes hashes(files ? *files : Json());
@@ -133,7 +133,7 @@ SweepFolder::SweepFolder(const fs::path& file, const fs::path& folder, const fs:
 SweepFolder::SweepFolder(const fs::path& folder, const fs::path& library)
     : path_(fs::absolute(folder).lexically_normal()) {
     if (!is_sweep_folder(path_))
-        throw Error(fmt::format("{}: no folder of a sweep; 'tactus sweep run SWEEP.toml -o {}' makes one",
+        throw Error(fmt::format("{}: not a sweep folder; 'tactus sweep run SWEEP.toml -o {}' creates one",
                                 folder.string(), folder.string()));
     const Json state = read_state(path_);
     const fs::path source = state["source"].as_text();

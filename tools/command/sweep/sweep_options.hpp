@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What several verbs of 'sweep' share.
+// Helpers shared by the 'sweep' verbs.
 #pragma once
 
 #include "tools/analysis/sweep/local_runner.hpp"

@@ -37,7 +37,7 @@ int sweep_work(const SweepWorkChoice& choice) {
         choice.share.empty() ? analysis::share_of_environment() : std::optional(analysis::parse_share(choice.share));
     analysis::LocalRun run = local_run(choice.jobs, runner_of(share));
     run.share = share.value_or(analysis::Share{});
-    // One of many: the tables are made by the one who merges.
+    // This process runs one of many shares: 'sweep run' or 'sweep status --tables' writes the tables.
     run.writes_tables = false;
     LiveLine line;
     run.tell = [&](const analysis::RunProgress& progress) { line.show(progress_text(progress)); };

@@ -93,7 +93,7 @@ public:
 private:
     void follow_run();
     void tend_plan();
-    /// Where no run shows the opened plan, the scene shows it without one.
+    /// True while no run shows the opened plan: the scene then shows the preview.
     bool shows_preview() const;
     /// `height`: of a vertical splitter; a horizontal one fills the width. Returns how far it is moved, pixels.
     double splitter(const std::string& id, bool upright, double height);

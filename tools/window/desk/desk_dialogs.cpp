@@ -40,7 +40,7 @@ void Desk::end_typing() {
     patch_.end_typing();
 }
 
-/// Where the patch is not in front, they mean the plan.
+/// Undo and redo act on the plan unless the patch layout is shown; saving saves both.
 EditButtons Desk::edit_buttons() {
     const bool is_saved = bench_.editor().is_saved() && (!plan_document_ || plan_document_->is_saved());
     if (!plan_document_ || layout == Layout::patch)

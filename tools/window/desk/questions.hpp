@@ -20,11 +20,11 @@ public:
 
     /// Something is unsaved that was not dropped.
     bool has_unsaved() const { return bench_.has_unsaved_edits() || (plan_ && plan_->has_unsaved_steps()); }
-    /// Who stays after all keeps what was dropped.
+    /// Revokes "Don't save" when the user cancels leaving.
     void want_all();
     /// Draws the dialogs on top of everything.
     void draw();
-    /// The dialog for a file name is closed: who leaves when the document is saved, leaves or stays.
+    /// Called when the file-name dialog closes: continues leaving if the document was saved, otherwise stays.
     void named(bool is_saved);
 
     /// Dialog before a patch is left: save, do not save, or stay? `saves`: waits for a file name.

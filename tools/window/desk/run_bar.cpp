@@ -156,7 +156,7 @@ void run_buttons(Workbench& bench, const RunStatus& status) {
         ticks += group.ticks;
         late = std::max(late, group.late_max_ms);
     }
-    // One late tick is no fault: red from one in a hundred on.
+    // Red above 1 % of late ticks only: a single late tick is not an error.
     const bool is_bad = 100 * missed > ticks;
     words(fmt::format("{} late, at most {:.2f} ms", missed, late), is_bad ? tone::bad : tone::dim);
 }

@@ -70,7 +70,7 @@ public:
     bool is_live() const;
     /// No run changes the opened plan: commands do so at once.
     bool changes_document() const { return document_ != nullptr && !is_live(); }
-    /// All that was done to the plan is in `plan`: a run that begins with it loses nothing. False while a fragment is held
+    /// True if `plan` contains every change, so a run that starts from it loses none. False while a fragment is held
     /// or the run is paused.
     bool is_settled() const;
     /// What was asked of the plan is not yet in the run.

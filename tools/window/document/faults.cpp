@@ -156,7 +156,7 @@ private:
         }
     }
 
-    /// No part of the patch can be told from the rest: all nodes are shown, and none runs.
+    /// The errors cannot be assigned to nodes or wires: shows all nodes and runs none.
     void give_up() {
         made_.plan.reset();
         std::map<std::string, std::string> all;

@@ -28,7 +28,7 @@ struct Fault {
     std::string wrong, suggestion;  ///< a misspelled word and the name that was probably meant
 };
 
-/// A text taken apart.
+/// Analysis of a patch text with errors.
 struct Anatomy {
     patch::Patch written;   ///< all that could be read
     std::vector<Fault> faults;  ///< in the order of the lines; each is reported once

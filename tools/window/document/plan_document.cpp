@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The window stands still meanwhile; other programs hold the lock while they compute one step.
+// The window is blocked while it waits; other programs hold the lock for the duration of one step.
 constexpr auto lock_patience = std::chrono::milliseconds(300);
 
 }  // namespace

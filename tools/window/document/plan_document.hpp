@@ -59,7 +59,7 @@ public:
     /// The file with the present version, which a run begins with. `folder`: of the last run, empty if there was none.
     /// Throws Error.
     std::filesystem::path file_for_run(const std::filesystem::path& folder);
-    /// The plan has what the run lacks: a run begins again. Taken once.
+    /// True once when the plan contains steps that the run lacks: the run must be restarted.
     bool take_begin_again() { return std::exchange(begins_again_, false); }
 
     /// Finds recovery files of windows that ended without saving.

@@ -68,5 +68,5 @@ TEST_CASE("cuts of pieces are refused with the next step where they are not defi
     REQUIRE(made.verb("move", "jaw-1 --pose 1,0,0,1,0,0,0").code == 0);
     CHECK_THAT(made.verb("cuts", "--from-pieces").err, ContainsSubstring("'jaw-1' was moved"));
     REQUIRE(made.verb("undo", "--steps 2").code == 0);
-    CHECK_THAT(made.verb("cuts", "--from-pieces").err, ContainsSubstring("'segment-2' lies in the leg still"));
+    CHECK_THAT(made.verb("cuts", "--from-pieces").err, ContainsSubstring("'segment-2' is still in the leg"));
 }
