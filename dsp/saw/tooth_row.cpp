@@ -120,7 +120,7 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         tooth.moved = glm::length(target - tooth.target);
         tooth.target = target;
         const bool held = tooth.raw_square() > 0.0;
-        if (held) tooth.lag = (goal(tooth) - tooth.at) * axes_;
+        if (held && tooth.seated) tooth.lag = (goal(tooth) - tooth.at) * axes_;
         squares_[n] = held ? tooth.square() : 0.0;
         tooth.fresh = false;
         // Under a saw that stands, a tooth that lost touch advances over some ticks: at a grazing angle a gap of a part of a
@@ -143,11 +143,10 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
     hang(walk);
 }
 
-/// A tooth that the blade drew back into bone goes with it through the bone; what is left of its lag fades.
+/// A tooth that the blade drew back into bone moves with it through the bone. The lag of the last tick fades; the motion of
+/// the blade adds nothing to it, or the tooth would drag on a hand that moves in air.
 void ToothRow::pass(const volume::BoneSnapshot& bone, Tooth& tooth, double dt) const noexcept {
-    const Vec3& y = axes_[1];
-    tooth.at += y * glm::dot(goal(tooth) - tooth.at, y);
-    const Vec3 left = (goal(tooth) - tooth.at) * std::exp(-dt / passing);
+    const Vec3 left = axes_ * Vec3(tooth.lag.x, 0.0, tooth.lag.z) * std::exp(-dt / passing);
     tooth.at = goal(tooth) - left;
     tooth.fresh = tooth.seated = glm::dot(left, left) < 1e-16 && bone.value(tooth.at) >= radius_;
 }

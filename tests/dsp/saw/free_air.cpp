@@ -7,6 +7,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -151,4 +152,35 @@ TEST_CASE("a tool that leaves bone has no force once all of it is clear, at up t
                 CHECK(most == 0.0);
                 CHECK(clear > 3);
             }
+}
+
+TEST_CASE("a blade that was drawn through bone it had not cut has no force in the air, however the hand trembles") {
+    const Random random{13};
+    std::uint64_t draw = 0;
+    const auto next = [&] { return random.uniform(draw++) - 0.5; };
+    int passed = 0;
+    for (int way = 0; way < 8; ++way) {
+        const auto bone = bone_block({.voxel = 0.5e-3});
+        Sawing sawing(*bone);
+        Pushing hand;
+        sawing.law = saw::CuttingLaw{}.with_edge(sawing.shape.kerf).sharpened(6.0);
+        hand.push(sawing, 12.0, 0.8);
+        // The hand twists the blade in its kerf and draws it out askew, by 12 mm; then it trembles in the air.
+        const Vec3 away(0.02 * next(), 0.01 * next(), 0.012), turn(0.5 * next(), 0.5 * next(), 0.5 * next());
+        double most = 0.0;
+        for (int n = 0; n <= 800; ++n) {
+            const double share = std::min(n / 80.0, 1.0);
+            const Vec3 tremor = 0.5e-3 * Vec3(std::sin(0.05 * n), std::sin(0.063 * n), std::sin(0.041 * n));
+            const double force = sawing
+                                     .step({hand.position + share * away + tremor,
+                                            glm::normalize(rotation_by(share * turn) * teeth_down)})
+                                     .magnitudes;
+            if (n == 80)
+                for (const saw::Tooth& tooth : sawing.blade.teeth().teeth()) passed += !tooth.seated;
+            if (n >= 600) most = std::max(most, force);
+        }
+        CAPTURE(way);
+        CHECK(most == 0.0);
+    }
+    CHECK(passed > 10);  // teeth that left through bone
 }
