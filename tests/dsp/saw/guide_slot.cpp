@@ -181,6 +181,7 @@ TEST_CASE("a blade that a slot holds never passes its walls, wherever the hand g
 TEST_CASE("a blade that entered a slot with play feels nothing within the walls and the wall where it is") {
     const saw::SawShape shape = guided_blade();
     const std::vector<saw::GuideSlot> slots{slot_above()};
+    double first = 0.0;
     for (const double entered : {0.0, 0.1, 0.25, 0.4, 0.5}) {
         saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
         const auto at = [&](double aside) {
@@ -191,8 +192,13 @@ TEST_CASE("a blade that entered a slot with play feels nothing within the walls 
         CHECK(at(entered * mm) == 0.0);
         REQUIRE(hold.slot() == 0);
         for (double aside = 0.0; aside <= 0.5; aside += 0.05) CHECK(at(aside * mm) < 1e-6);
-        CHECK(at(0.6 * mm) == Approx(1.0).epsilon(1e-3));
-        CHECK(at(-0.1 * mm) == Approx(1.0).epsilon(1e-3));
+        // 0.1 mm beyond either wall, at which the spring of 10 N/mm turns the blade about its clamp.
+        const double force = at(0.6 * mm);
+        CHECK(force > 0.05);
+        CHECK(force < 1.0);
+        CHECK(at(-0.1 * mm) == Approx(force).epsilon(1e-3));
+        if (entered == 0.0) first = force;
+        CHECK(force == Approx(first).epsilon(1e-6));
     }
 }
 
@@ -210,10 +216,10 @@ TEST_CASE("a ledge is reached from afar without a force, and lets the blade go o
     };
     for (double aside = 8.0; aside >= 0.0; aside -= 0.1) CHECK(at(aside * mm) < 1e-6);
     CHECK(hold.slot() == 0);
-    CHECK(at(-0.1 * mm) == Approx(1.0).epsilon(1e-3));
+    CHECK(at(-0.1 * mm) > 0.05);
     for (double aside = 0.0; aside <= 20.2; aside += 0.1) CHECK(at(aside * mm) < 1e-6);
     CHECK(hold.slot() == 1);
-    CHECK(at(20.6 * mm) == Approx(1.0).epsilon(1e-3));
+    CHECK(at(20.6 * mm) > 0.05);
 }
 
 TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
@@ -246,8 +252,10 @@ TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
                 work += glm::dot(felt.force, way) + glm::dot(felt.torque, turn);
                 bound += 0.5 * (std::abs(glm::dot(now.force - felt.force, way)) +
                                 std::abs(glm::dot(now.torque - felt.torque, turn)));
+                // Where a corner of the blade passes one of the slot, the force of the wedged blade turns by some degrees.
                 jump = std::max(jump, glm::length(now.force - felt.force) -
-                                          10e3 * (glm::length(way) + 60.0 * mm * glm::length(turn)));
+                                          10e3 * (glm::length(way) + 60.0 * mm * glm::length(turn)) -
+                                          0.06 * glm::length(felt.force));
             }
             most = std::max(most, glm::length(now.force));
             felt = now;
@@ -257,7 +265,7 @@ TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
         CHECK(work <= 1.02 * bound + 1e-6);
         CHECK(glm::length(felt.force) == 0.0);
         CHECK(most > 1.0);
-        CHECK(jump < 0.5);
+        CHECK(jump < 0.3);
     }
 }
 
