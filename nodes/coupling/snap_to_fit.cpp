@@ -68,7 +68,7 @@ struct SnapToFit {
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{};
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();
-        lead_.update(led, device, has_pull() && (!engaged.connected || engaged.get()),
+        lead_.update(led, device, has_pull() && force > 0.0 && (!engaged.connected || engaged.get()),
                      hold_.holds && settle.connected && settle.get(), solver_.state().balanced, tick.elapsed_seconds());
         solver.set(solver_.settings, *contact_, lead_.springs());
         solver_.settings.slip = lead_.slip();
@@ -158,8 +158,9 @@ private:
 
     /// The scale follows the distance of the painted surfaces: as they meet, points without a counterpart lose weight.
     void narrow(double elapsed) noexcept {
-        const double distance =
-            lead_.share() > 0.0 ? std::sqrt(fit_->energy() / (lead_.share() * energy_->law.strength)) : reach;
+        // Without a pull the energy contains no distance.
+        const double strength = lead_.share() * energy_->law.strength;
+        const double distance = strength > 0.0 ? std::sqrt(fit_->energy() / strength) : reach;
         const double wanted = std::clamp(2.0 * distance, 0.25e-3, std::max(0.25e-3, 0.5 * reach));
         scale_ += (wanted - scale_) * std::min(1.0, elapsed / 0.05);
     }

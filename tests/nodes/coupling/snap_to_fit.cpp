@@ -115,6 +115,29 @@ TEST_CASE("the hand can always pull a fragment out of its fit") {
     CHECK(session.node.last<Pose>("pose").position.x == Approx(20.0 * mm).margin(0.1 * mm));
 }
 
+TEST_CASE("a fragment follows the hand while the pull is 0 N, and is drawn once it is not") {
+    NodeHarness node("snap_to_fit", test::servo);
+    node.asset("moving", fracture().right).asset("fixed", fracture().left);
+    node.set("held", "1").set("target", "0").set("force", "0 N");
+    node.feed("scene", fracture().scene).feed("grip", grip);
+    // From 10 mm away to beside its place.
+    node.feed<Pose>("device", [](std::int64_t k) {
+        const double away = std::max(10.0 - 0.02 * static_cast<double>(k), 0.0) * mm;
+        return Pose{beside.position + Vec3(away, 0.0, 0.0), beside.orientation};
+    });
+    node.disconnect("holding").disconnect("strength").disconnect("engaged").disconnect("settle");
+    node.prepare();
+    node.run(700);
+    const double without = off(node.last<Pose>("pose"));
+    CHECK(without > 1.2 * mm);
+    CHECK(without < 3.0 * mm);
+    CHECK(node.last<double>("pull") == 0.0);
+    node.set("force", "10 N");
+    node.run(900);
+    CHECK(off(node.last<Pose>("pose")) < 0.6 * without);
+    CHECK(node.last<double>("pull") > 0.0);
+}
+
 TEST_CASE("a fragment that nothing draws stays in the hand, settle or not") {
     for (const bool has_target : {true, false}) {
         CAPTURE(has_target);
