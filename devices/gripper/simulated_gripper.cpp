@@ -90,6 +90,12 @@ simulate::Finger read_finger(Options& options) {
     finger.squeeze.from = options.quantity("squeeze_from", "1 s", "0 s");
     finger.squeeze.until = options.quantity("squeeze_until", "1e9 s", "0 s");
     finger.squeeze.rise = options.quantity("squeeze_rise", "0.4 s", "0.01 s", "100 s");
+    finger.squeeze.period = options.quantity("squeeze_period", "0 s", "0 s", "1e9 s");
+    if (finger.squeeze.period > 0.0 && finger.squeeze.period < finger.squeeze.until + finger.squeeze.rise)
+        throw Error(options.where("squeeze_period"),
+                    options.owner() +
+                        ": option 'squeeze_period' ends before the finger is open again; lengthen it, or "
+                        "shorten 'squeeze_until'");
     finger.gauge.step = options.quantity("gauge_step", "5 mN", "0 mN", "1 N");
     finger.gauge.noise = options.quantity("gauge_noise", "10 mN", "0 mN", "1 N");
     finger.gauge.random.seed = static_cast<std::uint64_t>(options.quantity("seed", "1", "0", "4294967295"));

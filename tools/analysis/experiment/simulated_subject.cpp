@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <sstream>
 #include <vector>
 
@@ -113,6 +114,7 @@ std::string SimulatedSubject::hand_targets(const TrialSpec& spec) const {
     std::istringstream lines(file::read_whole_file(task.ideal));
     std::string text;
     std::uint64_t index = 10;
+    Vec3 last(std::numeric_limits<double>::infinity());
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;
@@ -122,9 +124,10 @@ std::string SimulatedSubject::hand_targets(const TrialSpec& spec) const {
         // "1.5 s: X Y Z mm | trigger"
         if (std::sscanf(line.c_str(), "%lf s: %lf %lf %lf mm%n", &at, &x, &y, &z, &used) != 4 || used == 0)
             throw Error(SourceLocation{task.ideal.string(), number, 1}, "a target is TIME s: X Y Z mm | BUTTON");
-        // Presses follow the target that they confirm: the hand stays where it is.
-        const bool is_press = line.find('|') != std::string::npos && index > 10;
-        if (!is_press) index += 3;
+        // Presses repeat the target that they confirm: the hand stays where it is.
+        const Vec3 ideal(x, y, z);
+        if (ideal != last) index += 3;
+        last = ideal;
         const double mm = 1e3 * error;
         text += fmt::format("{:.6f} s: {:.6f} {:.6f} {:.6f} mm{}\n", time * at + (at > 0.0 ? hand.lag : 0.0),
                             x + mm * random.normal(index), y + mm * random.normal(index + 1),
