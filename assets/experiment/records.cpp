@@ -117,6 +117,8 @@ ExperimentFile load_experiment_file(const fs::path& path) {
             if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
                 throw Error(fmt::format("the file '{}' is outside of the folder", name.string()));
         }
+        for (const Json& one : json["assets"])
+            experiment.assets.push_back({one["name"].get<std::string>(), one["hash"].get<std::string>()});
         for (const Json& one : json["subjects"]) {
             // A folder is named by it.
             const std::string who = one["pseudonym"].get<std::string>();
@@ -135,8 +137,14 @@ ExperimentFile load_experiment_file(const fs::path& path) {
 }
 
 void save_experiment_file(const ExperimentFile& experiment, const fs::path& path) {
-    Json json{{"format", data_format},  {"name", experiment.name},   {"protocol", experiment.protocol},
-              {"files", Json::array()}, {"subjects", Json::array()}, {"freed_rows", experiment.freed_rows}};
+    Json json{{"format", data_format},
+              {"name", experiment.name},
+              {"protocol", experiment.protocol},
+              {"files", Json::array()},
+              {"assets", Json::array()},
+              {"subjects", Json::array()},
+              {"freed_rows", experiment.freed_rows}};
+    for (const FrozenFile& one : experiment.assets) json["assets"].push_back({{"name", one.name}, {"hash", one.hash}});
     for (const FrozenFile& one : experiment.files) json["files"].push_back({{"name", one.name}, {"hash", one.hash}});
     for (const SubjectEntry& one : experiment.subjects)
         json["subjects"].push_back({{"pseudonym", one.pseudonym},

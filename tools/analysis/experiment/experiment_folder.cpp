@@ -35,22 +35,40 @@ std::string hash_of(const fs::path& file) {
     return fmt::format("{:016x}", hash.value());
 }
 
-/// The protocol first, then all that it names, and the patches within those patches.
-std::vector<fs::path> used_files(const Protocol& protocol) {
-    std::vector<fs::path> all = protocol.files();
-    const auto add = [&](const fs::path& patch_file) {
+struct UsedFiles {
+    std::vector<fs::path> texts;  ///< the protocol first, then all that it names, and the patches within those patches
+    std::vector<fs::path> assets;  ///< other files that the patches load
+};
+
+UsedFiles used_files(const Protocol& protocol) {
+    UsedFiles used{protocol.files(), {}};
+    const auto add = [](std::vector<fs::path>& to, const fs::path& file) {
+        if (std::ranges::find(to, file) == to.end()) to.push_back(file);
+    };
+    const auto add_patch = [&](const fs::path& patch_file) {
         if (patch_file.empty()) return;
         patch::Problems problems;
         patch::Patch loaded = patch::load_patch(patch_file, problems);
         patch::read_parts(loaded);
-        for (const fs::path& part : patch::part_files(loaded)) {
-            const fs::path file = fs::absolute(part).lexically_normal();
-            if (std::ranges::find(all, file) == all.end()) all.push_back(file);
+        for (const fs::path& part : patch::part_files(loaded)) add(used.texts, fs::absolute(part).lexically_normal());
+        for (const patch::PatchAsset& asset : loaded.assets) {
+            const std::string path = asset.path.string();
+            add(used.assets, fs::absolute(path.substr(0, path.find('#'))).lexically_normal());
         }
     };
-    add(protocol.patch);
-    for (const experiment::Task& task : protocol.tasks) add(task.patch);
-    return all;
+    add_patch(protocol.patch);
+    for (const experiment::Task& task : protocol.tasks) add_patch(task.patch);
+    std::erase_if(used.assets, [&](const fs::path& file) {
+        return std::ranges::find(used.texts, file) != used.texts.end() || !fs::is_regular_file(file);
+    });
+    return used;
+}
+
+std::vector<FrozenFile> hashes_of(const std::vector<fs::path>& assets, const Protocol& protocol) {
+    std::vector<FrozenFile> hashes;
+    for (const fs::path& file : assets)
+        hashes.push_back({file.lexically_relative(protocol.file.parent_path()).string(), hash_of(file)});
+    return hashes;
 }
 
 /// Relative to the lowest folder that holds all files: their copies name each other as the files do.
@@ -141,7 +159,8 @@ void ExperimentFolder::freeze(const Protocol& protocol) {
     file_.name = protocol.name;
     file_.protocol = protocol.file.string();
     file_.files.clear();
-    const std::vector<fs::path> files = used_files(protocol);
+    const UsedFiles used = used_files(protocol);
+    const std::vector<fs::path>& files = used.texts;
     for (const fs::path& file : files) {
         const std::string name = frozen_file_name(protocol, files, file);
         const fs::path copy = folder_ / frozen_name / name;
@@ -151,12 +170,14 @@ void ExperimentFolder::freeze(const Protocol& protocol) {
         file::write_durable_file(copy, file::read_whole_file(file));
         file_.files.push_back({name, hash_of(copy)});
     }
+    file_.assets = hashes_of(used.assets, protocol);
     save();
 }
 
 void ExperimentFolder::check_frozen(const Protocol& protocol) const {
     std::vector<FrozenFile> now;
-    const std::vector<fs::path> files = used_files(protocol);
+    const UsedFiles used = used_files(protocol);
+    const std::vector<fs::path>& files = used.texts;
     for (const fs::path& file : files) now.push_back({frozen_file_name(protocol, files, file), hash_of(file)});
     const auto refuse = [&](const std::string& why) {
         throw Error(
@@ -177,6 +198,15 @@ void ExperimentFolder::check_frozen(const Protocol& protocol) const {
     for (const FrozenFile& one : now)
         if (std::ranges::find(file_.files, one.name, &FrozenFile::name) == file_.files.end())
             refuse(fmt::format("it now names {}", one.name));
+    const std::vector<FrozenFile> assets = hashes_of(used.assets, protocol);
+    for (const FrozenFile& before : file_.assets) {
+        const auto found = std::ranges::find(assets, before.name, &FrozenFile::name);
+        if (found == assets.end()) refuse(fmt::format("its patches no longer load {}", before.name));
+        if (found->hash != before.hash) refuse(fmt::format("the content of {} has changed", before.name));
+    }
+    for (const FrozenFile& one : assets)
+        if (std::ranges::find(file_.assets, one.name, &FrozenFile::name) == file_.assets.end())
+            refuse(fmt::format("its patches now load {}", one.name));
 }
 
 void ExperimentFolder::save() const { experiment::save_experiment_file(file_, folder_ / state_name); }
@@ -231,10 +261,11 @@ void ExperimentFolder::withdraw(const std::string& pseudonym) {
 
 std::string ExperimentFolder::protocol_hash() const {
     Hash hash;
-    for (const FrozenFile& one : file_.files) {
-        hash.add_text(one.name);
-        hash.add_text(one.hash);
-    }
+    for (const std::vector<FrozenFile>* list : {&file_.files, &file_.assets})
+        for (const FrozenFile& one : *list) {
+            hash.add_text(one.name);
+            hash.add_text(one.hash);
+        }
     return fmt::format("{:016x}", hash.value());
 }
 

@@ -300,6 +300,31 @@ TEST_CASE("a protocol that changed after the first subject is refused with what 
                       Catch::Matchers::ContainsSubstring("patches/stiffness-pair.toml, line"));
 }
 
+TEST_CASE("a bone or sound that changed after the first subject is refused with its name", "[slow]") {
+    const run::ScratchFolder scratch;
+    const std::atomic<bool> never{false};
+    ExperimentChoice choice = simulated_choice(scratch.path(), "P01");
+    // An asset that the patch loads: the movement of its hand.
+    const fs::path patch = scratch.path() / "files/patches/stiffness-pair.toml",
+                   hand = scratch.path() / "files/hand.targets";
+    std::string text = file::read_whole_file(patch);
+    const std::size_t at = text.find("targets   = "), end = text.find('\n', at), devices = text.find("[devices");
+    std::string targets = text.substr(at + 13, end - at - 14);
+    std::replace(targets.begin(), targets.end(), ';', '\n');
+    std::ofstream(hand) << targets << '\n';
+    text.replace(at, end - at, "file = \"movement\"");
+    text.insert(devices, "[assets]\nmovement = \"../hand.targets\"\n\n");
+    std::ofstream(patch) << text;
+    choice.protocol = experiment::load_protocol(choice.protocol.file);
+    run_experiment(choice, silent(), never);
+    choice.subject = "P02";
+    run_experiment(choice, silent(), never);
+    std::ofstream(hand, std::ios::app) << "9 s: 0 0 5 mm\n";
+    choice.subject = "P03";
+    CHECK_THROWS_WITH(run_experiment(choice, silent(), never),
+                      Catch::Matchers::ContainsSubstring("the content of hand.targets has changed"));
+}
+
 TEST_CASE("a protocol may name files above its own folder, and its data can be analysed", "[slow]") {
     const run::ScratchFolder scratch;
     const std::atomic<bool> never{false};
