@@ -12,6 +12,10 @@ class App;
 class Option;
 }  // namespace CLI
 
+namespace tactus::file {
+class Json;
+}
+
 namespace tactus::command {
 
 /// A declared option of a verb. Copies refer to the same option.
@@ -100,6 +104,7 @@ struct Verb {
     const char* job = "";  ///< heading in the help text; "": none
     const char* old_name = nullptr;  ///< accepted as well, but not shown
     bool is_hidden = false;  ///< no help text shows it
+    file::Json (*schema)() = nullptr;  ///< JSON Schema of its --json output; null: it has none
 };
 
 /// A program: a list of verbs.

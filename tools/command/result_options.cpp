@@ -8,13 +8,17 @@
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace tactus::command {
 
 namespace {
+
+constexpr std::array texts{".txt", ".json", ".csv", ".html", ".pdf"};
 
 const report::ResultEntry::Picture* first_picture(const report::Result& result) {
     for (const report::ResultEntry& entry : result.entries) {
@@ -26,8 +30,9 @@ const report::ResultEntry::Picture* first_picture(const report::Result& result) 
     return nullptr;
 }
 
-void write_file(const report::Result& result, const std::filesystem::path& out, const FigureChoice& figure) {
+void write_file(const report::Result& result, const std::filesystem::path& out, const ResultChoice& choice) {
     const std::string ending = out.extension().string();
+    if (ending == choice.product.ending) return;
     if (ending == ".txt") file::write_whole_file(out, report::text_of(result));
     else if (ending == ".json") file::write_whole_file(out, report::output_json(result).dump(2) + "\n");
     else if (ending == ".csv") file::write_whole_file(out, report::csv_of(result));
@@ -37,41 +42,75 @@ void write_file(const report::Result& result, const std::filesystem::path& out, 
         file::write_whole_file(out, pdf.bytes);
         if (!pdf.warning.empty()) say(stderr, fmt::format("warning: {}: {}\n", out.string(), pdf.warning));
     } else if (const auto* picture = first_picture(result)) {
-        save_figure(picture->draw(), out, figure);
+        save_figure(picture->draw(choice.figure.figure_style()), out, choice.figure);
     } else {
         throw Error(out.string() + ": there is no figure of this result");
     }
 }
 
-}  // namespace
-
-void add_result_options(VerbOptions& verb, ResultChoice& choice) {
-    verb.add("-o,--out", choice.out,
-             "file for the result, by its ending: .txt, .json, .csv, .html or .pdf, or .svg or .png of its figure; "
-             "repeatable")
-        .one_each();
-    verb.flag("--quiet", choice.quiet, "print no result, only errors; for -o");
-    add_figure_options(verb, choice.figure);
+/// ".txt, .json, .csv, .html or .pdf" of the formats of a result.
+std::string endings_of(const ResultChoice& choice) {
+    std::vector<std::string> all;
+    for (const char* ending : texts)
+        if (ending != choice.product.ending) all.emplace_back(ending);
+    const std::string last = all.back();
+    all.pop_back();
+    return fmt::format("{} or {}", fmt::join(all, ", "), last);
 }
 
-void check_result_files(const ResultChoice& choice, bool has_figure) {
-    constexpr std::array texts{".txt", ".json", ".csv", ".html", ".pdf"};
+}  // namespace
+
+Option add_result_options(VerbOptions& verb, ResultChoice& choice, ResultFigure figure, Product product) {
+    choice.product = std::move(product);
+    choice.has_figure = figure;
+    const bool has_figure = figure != ResultFigure::none;
+    std::string about = fmt::format("file for the result, by its ending: {}", endings_of(choice));
+    if (has_figure) about += ", or .svg or .png of its figure";
+    if (!choice.product.ending.empty()) about += fmt::format("; {}: {}", choice.product.ending, choice.product.about);
+    const Option out = verb.add("-o,--out", choice.out, about + "; repeatable").one_each();
+    verb.flag("--json", choice.json, "as JSON");
+    verb.flag("--quiet", choice.quiet, "print no result, only errors; for -o");
+    if (has_figure)
+        add_figure_options(verb, choice.figure,
+                           figure == ResultFigure::styled ? FigureStyles::all : FigureStyles::screen);
+    return out;
+}
+
+std::vector<std::filesystem::path> ResultChoice::products() const {
+    std::vector<std::filesystem::path> all;
+    for (const std::filesystem::path& path : out)
+        if (path.extension() == product.ending) all.push_back(path);
+    return all;
+}
+
+bool ResultChoice::shows_figures() const {
+    return std::ranges::any_of(out, [](const std::filesystem::path& path) {
+        return path.extension() == ".html" || report::is_figure_file(path);
+    });
+}
+
+bool is_result_file(const std::filesystem::path& path) {
+    return report::is_figure_file(path) || std::ranges::find(texts, path.extension().string()) != texts.end();
+}
+
+void check_result_files(const ResultChoice& choice) {
+    const bool has_figure = choice.has_figure != ResultFigure::none;
     for (const std::filesystem::path& out : choice.out) {
         const std::string ending = out.extension().string();
         const bool is_image = ending == ".svg" || ending == ".png";
+        if (ending == choice.product.ending && !ending.empty()) continue;
         if (is_image && !has_figure)
-            throw Error(fmt::format("{}: this result has no figure; write it as .txt, .json, .csv, .html or .pdf",
-                                    out.string()));
+            throw Error(fmt::format("{}: this result has no figure; write it as {}", out.string(), endings_of(choice)));
         if (!is_image && std::ranges::find(texts, ending) == texts.end())
-            throw Error(fmt::format("{}: a result is written as .txt, .json, .csv, .html, .pdf{}", out.string(),
-                                    has_figure ? ", .svg or .png" : ""));
+            throw Error(fmt::format("{}: a result is written as {}{}", out.string(), endings_of(choice),
+                                    has_figure ? ", a figure as .svg or .png" : ""));
     }
 }
 
-void write_result(const report::Result& result, const ResultChoice& choice, bool json) {
-    for (const std::filesystem::path& out : choice.out) write_file(result, out, choice.figure);
+void write_result(const report::Result& result, const ResultChoice& choice) {
+    for (const std::filesystem::path& out : choice.out) write_file(result, out, choice);
     if (choice.quiet) return;
-    say(stdout, json ? report::output_json(result).dump(2) + "\n" : report::text_of(result));
+    say(stdout, choice.json ? report::output_json(result).dump(2) + "\n" : report::text_of(result));
 }
 
 }  // namespace tactus::command

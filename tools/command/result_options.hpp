@@ -6,24 +6,43 @@
 #include "tools/report/result/result.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace tactus::command {
 
-struct ResultChoice {
-    std::vector<std::filesystem::path> out;
-    bool quiet = false;
-    FigureChoice figure;
+/// A file that a verb makes besides its result: a measured response, a filter.
+struct Product {
+    std::string ending;  ///< ".toml"; empty: the verb makes none
+    std::string about;  ///< "the filter"
 };
 
-/// -o, --quiet, --dpi.
-void add_result_options(VerbOptions& verb, ResultChoice& choice);
+enum class ResultFigure { none, some, styled };  ///< styled: in all styles
 
-/// Throws Error for a file whose ending no format has, and for a figure if the verb draws none; call before the analysis.
-void check_result_files(const ResultChoice& choice, bool has_figure);
+struct ResultChoice {
+    std::vector<std::filesystem::path> out;
+    bool quiet = false, json = false;
+    FigureChoice figure;
+    Product product;
+    ResultFigure has_figure = ResultFigure::none;
 
-/// Writes the files; then prints the result, unless quiet. `json`: as JSON. Throws Error if a file cannot be written.
-void write_result(const report::Result& result, const ResultChoice& choice, bool json);
+    /// The files for the product.
+    std::vector<std::filesystem::path> products() const;
+    /// Whether one of the files shows figures.
+    bool shows_figures() const;
+};
+
+/// -o, --quiet, --json; of a verb with a figure also the options of figures.
+Option add_result_options(VerbOptions& verb, ResultChoice& choice, ResultFigure figure, Product product = {});
+
+/// Whether `path` has the ending of a format of results or figures.
+bool is_result_file(const std::filesystem::path& path);
+
+/// Throws Error for a file whose ending no format has, and for a figure if there is none; call before the analysis.
+void check_result_files(const ResultChoice& choice);
+
+/// Writes the files but the product; then prints the result, unless quiet. Throws Error if a file cannot be written.
+void write_result(const report::Result& result, const ResultChoice& choice);
 
 }  // namespace tactus::command

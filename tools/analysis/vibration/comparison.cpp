@@ -93,6 +93,12 @@ const char* touch_unit(signal::ThresholdUnit unit) {
                                                          : "none";
 }
 
+signal::ThresholdUnit touch_of(std::string_view name) {
+    return name == "none"           ? signal::ThresholdUnit::none
+           : name == "acceleration" ? signal::ThresholdUnit::acceleration
+                                    : signal::ThresholdUnit::displacement;
+}
+
 void compare_takes(ComparedPair& pair, const signal::Take& reference, const signal::Take& output,
                    const signal::ComparisonOptions& options, bool pictures) {
     pair.touch = options.touch;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,8 @@ ComparedPair compare_files(const CompareSettings& settings);
 
 /// "displacement", "acceleration" or "none".
 const char* touch_unit(signal::ThresholdUnit unit);
+/// Its inverse.
+signal::ThresholdUnit touch_of(std::string_view name);
 
 /// Two files to compare; one is empty if a folder has no partner.
 struct PairedFiles {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus generate (hidden): writes manual pages and shell completions, for packages, and JSON Schemas.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/catalogue.hpp"
 #include "tools/command/manual.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/result/printers.hpp"
-#include "tools/report/vibration/orders_result.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace tactus::command {
 
@@ -19,13 +22,26 @@ struct GenerateChoice {
     std::filesystem::path folder;
 };
 
+/// A file for each verb that has one: orders.schema.json, plan-check.schema.json.
+void write_schemas(const Verbs& verbs, const std::string& group, const std::filesystem::path& folder) {
+    for (const Verb& verb : verbs) {
+        const std::string name = group + verb.name;
+        if (verb.verbs) write_schemas(verb.verbs(), name + " ", folder);
+        if (!verb.schema) continue;
+        file::Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                          {"title", fmt::format("tactus {} --json", name)}};
+        schema.update(verb.schema());
+        std::string file = name;
+        std::ranges::replace(file, ' ', '-');
+        file::write_whole_file(folder / (file + ".schema.json"), schema.dump(2) + "\n");
+    }
+}
+
 int generate(const GenerateChoice& choice) {
     const VerbPage pages = pages_of(tactus_program());
     std::filesystem::create_directories(choice.folder);
     if (choice.what == "schema") {
-        file::write_whole_file(
-            choice.folder / "orders.schema.json",
-            report::schema_of_output("tactus orders --json", report::orders_fields().schema()).dump(2) + "\n");
+        write_schemas(all_verbs(), "", choice.folder);
         return done;
     }
     if (choice.what == "man")

@@ -4,35 +4,32 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/batch.hpp"
-#include "tools/command/figure_options.hpp"
-#include "tools/command/options.hpp"
-#include "tools/command/vibration/comparison_text.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/comparison_figure.hpp"
-#include "tools/report/figures/comparison_page.hpp"
-#include "tools/report/figures/comparison_table.hpp"
-#include "tools/report/figures/html_report.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/report/vibration/comparison_result.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
-#include <span>
+#include <string>
+#include <vector>
 
 namespace tactus::command {
 
 namespace {
 
 namespace fs = std::filesystem;
-namespace html = report::html;
 using analysis::ComparedPair;
 
 struct CompareChoice {
     analysis::CompareSettings settings;
     fs::path thresholds;
-    fs::path plot, report, table;                    // a figure, .html, .csv
-    FigureChoice figure;
+    fs::path plot, table;                            // a figure, .csv
+    ResultChoice result;
     std::string touch = "displacement", axes = "strongest";
     std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
     std::string where;                               // rows of CSV logs
@@ -41,7 +38,6 @@ struct CompareChoice {
     std::optional<int> skip_rows;
     std::optional<double> rate;                      // Hz, of logs without times
     int jobs = 0;                                    // pairs at a time, 0: one per core
-    bool json = false;
 };
 
 /// One column name is for both files; of two, the first is for the reference and the second for the output.
@@ -59,58 +55,21 @@ table::LogSelection selection_for(const CompareChoice& choice, std::size_t file)
     return selection;
 }
 
-/// `failures`: the error of each pair, empty for success.
-VerdictCounts count_of(std::span<const ComparedPair> pairs, std::span<const std::string> failures) {
-    VerdictCounts count;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        ++(!failures[i].empty() ? count.bad : pairs[i].verdict.passed() ? count.passed : count.failed);
-    return count;
-}
-
-std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<std::string>& failures,
-                    std::size_t passed) {
-    std::string body =
-        fmt::format("<p>{} of {} pass.</p>\n", passed, pairs.size()) + report::comparison_summary(pairs, failures);
-    const ComparedPair* last = nullptr;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (!failures[i].empty()) continue;
-        last = &pairs[i];
-        body += fmt::format("<h2 id=\"p{}\">{}</h2>\n", i, html::escaped(analysis::pair_name(pairs[i], pairs))) +
-                report::comparison_section(pairs[i], fmt::format("p{}x", i));
-    }
-    if (last) body += report::comparison_method(*last);
-    return html::page(fmt::format("{} pairs of vibrations", pairs.size()), body);
-}
-
-std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures,
-                    const VerdictCounts& count) {
-    file::Json json{{"verdict", count.bad + count.failed == 0 ? "pass" : "fail"},
-                    {"passed", count.passed},
-                    {"failed", count.failed},
-                    {"bad", count.bad}};
-    json["pairs"] = file::Json::array();
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        file::Json row{{"reference", pairs[i].reference.string()}, {"output", pairs[i].output.string()}};
-        if (failures[i].empty()) row.update(file::Json::parse(comparison_json(pairs[i])));
-        else row["error"] = failures[i];
-        json["pairs"].push_back(std::move(row));
-    }
-    return json.dump(2);
+/// Prints and writes; returns the exit code.
+int finish(const CompareChoice& choice, const report::ComparedPairs& found) {
+    if (!choice.table.empty()) file::write_whole_file(choice.table, report::comparison_table(found));
+    write_result(report::comparison_fields().of(found), choice.result);
+    const report::VerdictCounts counts = found.counts();
+    return counts.bad > 0 ? bad_input : counts.failed > 0 ? answer_is_no : done;
 }
 
 int compare_one(const CompareChoice& choice, const analysis::CompareSettings& settings) {
     if (!choice.plot.empty() && !report::is_figure_file(choice.plot))
         throw Error(choice.plot.string() + ": a figure is written as .svg, .png or .pdf");
     const ComparedPair pair = analysis::compare_files(settings);
-    if (!choice.plot.empty()) save_figure(report::draw_comparison(pair), choice.plot, choice.figure);
-    if (!choice.report.empty()) file::write_whole_file(choice.report, report::comparison_page(pair));
-    if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
-    if (choice.json) {
-        const std::vector<std::string> no_failure(1);
-        const std::span<const ComparedPair> pairs(&pair, 1);
-        fmt::print("{}\n", json_of(pairs, no_failure, count_of(pairs, no_failure)));
-    } else print(pair);
-    return pair.verdict.passed() ? done : answer_is_no;
+    if (!choice.plot.empty()) save_figure(report::draw_comparison(pair), choice.plot, choice.result.figure);
+    const std::string no_error;
+    return finish(choice, {{&pair, 1}, {&no_error, 1}});
 }
 
 int compare_many(const CompareChoice& choice, const analysis::CompareSettings& settings) {
@@ -135,24 +94,20 @@ int compare_many(const CompareChoice& choice, const analysis::CompareSettings& s
             const fs::path varied = fs::is_directory(settings.output) ? one.output : one.reference;
             save_figure(report::draw_comparison(pairs[i]), choice.plot / (varied.filename().string() + ".svg"), {});
         });
-    const VerdictCounts count = count_of(pairs, failures);
     tell_failures(failures);
-    if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(pairs, failures));
-    if (!choice.report.empty()) file::write_whole_file(choice.report, page_of(pairs, failures, count.passed));
-    if (choice.json) fmt::print("{}\n", json_of(pairs, failures, count));
-    else fmt::print("{}{} of {} pass\n", comparison_rows(pairs, failures), count.passed, pairs.size());
-    return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
+    return finish(choice, {pairs, failures});
 }
 
 int compare(const CompareChoice& choice) {
+    check_result_files(choice.result);
     analysis::CompareSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
-    settings.touch = touch_of(choice.touch);
+    settings.touch = analysis::touch_of(choice.touch);
     settings.axes = choice.axes == "vector" ? analysis::Axes::vector : analysis::Axes::strongest;
     settings.logs = {selection_for(choice, 0), selection_for(choice, 1)};
     settings.stretches = {stretch_of(choice.stretch, 0), stretch_of(choice.stretch, 1)};
     if (!choice.band.empty()) settings.plotted = parse_band(choice.band, "--band");
-    settings.pictures = !choice.plot.empty() || !choice.report.empty();
+    settings.pictures = !choice.plot.empty() || choice.result.shows_figures();
     if (fs::is_directory(settings.reference) || fs::is_directory(settings.output))
         return compare_many(choice, settings);
     return compare_one(choice, settings);
@@ -169,12 +124,12 @@ Action declare_compare(VerbOptions& verb) {
     verb.add("--thresholds", choice->thresholds,
              "TOML file with the thresholds; keys and defaults: docs/reference/tables.md");
     verb.add("--plot", choice->plot, "a figure, .svg, .png or .pdf; for folders: a folder of SVG files");
-    add_figure_options(verb, choice->figure);
+    add_result_options(verb, choice->result, ResultFigure::some);
+    verb.old("--report", "--out");
     verb.add("--band", choice->band,
              "plotted range, Hz (default: 20 Hz to half the sample rate of the slower record, at most 4 kHz); what is "
              "judged stays the same")
         .value_name("LOW:HIGH");
-    verb.add("--report", choice->report, "HTML file with figure, tables and methods");
     verb.add("--table", choice->table, "a row per pair, CSV");
     verb.add("--jobs", choice->jobs, "pairs at a time, 0: one per core").range(0, 256);
     verb.add("--reference-scale", settings.reference_scale, "units per full scale, such as m/s^2").shows_default();
@@ -213,14 +168,16 @@ Action declare_compare(VerbOptions& verb) {
              "greatest delay searched, s (default: any at which 1 s and a quarter of the shorter record overlap)")
         .unit("s")
         .range(0.001, 100.0);
-    verb.flag("--json", choice->json, "as JSON");
     return [choice] { return compare(*choice); };
 }
 
 }  // namespace
 
 Verb compare_verb() {
-    return {"compare", "judge whether two vibrations are equivalent; exit code 0: yes, 1: no", declare_compare};
+    return {.name = "compare",
+            .about = "judge whether two vibrations are equivalent; exit code 0: yes, 1: no",
+            .add = declare_compare,
+            .schema = [] { return report::schema_of_output({report::comparison_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

@@ -70,7 +70,7 @@ void write_waterfall(const analysis::Orders& found, const std::filesystem::path&
         }
         file::write_whole_file(out, json.dump() + "\n");
     } else {
-        save_figure(report::draw_waterfall(found, record), out, figure);
+        save_figure(report::draw_waterfall(found, record, figure.figure_style()), out, figure);
     }
 }
 
@@ -93,13 +93,15 @@ int orders(const OrdersChoice& choice) {
     settings.record = choice.settings();
     if (!choice.band.empty()) settings.range = parse_band(choice.band, "--band");
     settings.waterfall = waterfall_of(choice);
-    check_result_files(choice.result, settings.waterfall.has_value());
+    ResultChoice result = choice.result;
+    if (!settings.waterfall) result.has_figure = ResultFigure::none;
+    check_result_files(result);
     const analysis::Orders found = analysis::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
     for (const std::filesystem::path& out : choice.waterfalls)
-        about_file(file, [&] { write_waterfall(found, file, out, choice.result.figure); });
+        about_file(file, [&] { write_waterfall(found, file, out, result.figure); });
     const report::FileOrders shown{file, &found};
-    write_result(report::orders_fields().of(shown), choice.result, choice.json);
+    write_result(report::orders_fields().of(shown), result);
     return done;
 }
 
@@ -122,13 +124,18 @@ Action declare_orders(VerbOptions& verb) {
     verb.add("--over", choice->over, "columns of a waterfall: orders (default) or frequency")
         .one_of({"orders", "frequency"});
     verb.add("--against", choice->against, "rows of a waterfall: time (default) or speed").one_of({"time", "speed"});
-    add_result_options(verb, choice->result);
+    add_result_options(verb, choice->result, ResultFigure::styled);
     verb.flag("--peak", choice->peak, "peak values instead of rms in --csv");
     return [choice] { return orders(*choice); };
 }
 
 }  // namespace
 
-Verb orders_verb() { return {"orders", "measure the orders of a machine with a changing rate", declare_orders}; }
+Verb orders_verb() {
+    return {.name = "orders",
+            .about = "measure the orders of a machine with a changing rate",
+            .add = declare_orders,
+            .schema = [] { return report::schema_of_output({report::orders_fields().schema()}); }};
+}
 
 }  // namespace tactus::command

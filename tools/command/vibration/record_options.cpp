@@ -31,7 +31,6 @@ void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* fil
         .unit("Hz")
         .range(1e-6, 1e9);
     add_stretch_options(verb, choice.stretch);
-    verb.flag("--json", choice.json, "as JSON");
 }
 
 }  // namespace tactus::command

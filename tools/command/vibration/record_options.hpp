@@ -16,7 +16,6 @@ struct RecordChoice {
     std::vector<std::filesystem::path> files;
     analysis::RecordSettings record;  ///< without the stretch: see `settings`
     StretchChoice stretch;
-    bool json = false;
 
     analysis::RecordSettings settings() const;
 };

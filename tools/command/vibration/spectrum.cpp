@@ -3,17 +3,16 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/batch.hpp"
-#include "tools/command/figure_options.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/command/vibration/record_options.hpp"
-#include "tools/command/vibration/spectrum_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/html_report.hpp"
-#include "tools/report/figures/spectrum_figure.hpp"
-#include "tools/report/figures/spectrum_page.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/report/vibration/spectrum_result.hpp"
 
 #include <fmt/format.h>
 
 #include <functional>
+#include <iterator>
 #include <memory>
 
 namespace tactus::command {
@@ -21,12 +20,9 @@ namespace tactus::command {
 namespace {
 
 namespace fs = std::filesystem;
-namespace html = report::html;
 
 struct SpectrumChoice : RecordChoice {
-    SpectrumWords words;
-    std::string envelope;              // LOW:HIGH in Hz
-    std::string fundamental = "5:1000";  // LOW:HIGH in Hz
+    report::SpectrumMethod method;
     std::string band;                  // LOW:HIGH in Hz, of plots
     std::string octaves, integrate;    // none, octave or third; none, velocity or displacement
     double high_pass = 10.0;           // Hz
@@ -35,22 +31,54 @@ struct SpectrumChoice : RecordChoice {
     std::optional<std::size_t> segment;
     std::optional<double> overlap;
     int orders = 10, jobs = 0;         // files at a time, 0: one per core
-    fs::path csv, plot, table, report, cepstrum;
-    FigureChoice figure;
+    fs::path csv, plot, table, cepstrum;
+    ResultChoice result;
 };
 
 struct Outcome {
-    std::string text, table;  // printed text; CSV rows
-    std::string section;      // section of the HTML page
+    report::Result result;
+    std::vector<file::Json> table;                // rows of CSV
     std::optional<analysis::AnalysedFile> drawn;  // for a figure of several files
 };
+
+/// Frequency and density per channel.
+std::string analysis_csv(const analysis::AnalysedFile& file) {
+    std::string text = "frequency_hz";
+    for (const analysis::AnalysedChannel& channel : file.channels) text += "," + channel.name;
+    text += '\n';
+    const std::size_t bins = file.channels.empty() ? 0 : file.channels.front().report.psd.power.size();
+    for (std::size_t k = 0; k < bins; ++k) {
+        fmt::format_to(std::back_inserter(text), "{}", file.channels.front().report.psd.frequency(k));
+        for (const analysis::AnalysedChannel& channel : file.channels)
+            fmt::format_to(std::back_inserter(text), ",{}", channel.report.psd.power[k]);
+        text += '\n';
+    }
+    return text;
+}
+
+/// Quefrency and cepstrum per channel.
+std::string cepstrum_csv(const analysis::AnalysedFile& file) {
+    std::string text = "quefrency_s";
+    for (const analysis::AnalysedChannel& channel : file.channels) text += "," + csv_field(channel.name);
+    text += '\n';
+    const std::size_t values = file.channels.empty() ? 0 : file.channels.front().report.cepstrum.value.size();
+    for (std::size_t k = 0; k < values; ++k) {
+        fmt::format_to(std::back_inserter(text), "{}", file.channels.front().report.cepstrum.quefrency(k));
+        for (const analysis::AnalysedChannel& channel : file.channels)
+            // A silent channel has none.
+            text +=
+                k < channel.report.cepstrum.value.size() ? fmt::format(",{}", channel.report.cepstrum.value[k]) : ",";
+        text += '\n';
+    }
+    return text;
+}
 
 analysis::SpectrumSettings settings_of(const SpectrumChoice& choice, bool overlay) {
     constexpr std::pair<const char*, signal::WindowKind> windows[] = {
         {"hann", signal::WindowKind::hann},         {"hamming", signal::WindowKind::hamming},
         {"blackman", signal::WindowKind::blackman}, {"blackmanharris", signal::WindowKind::blackman_harris},
         {"flattop", signal::WindowKind::flat_top},  {"boxcar", signal::WindowKind::rectangular}};
-    const SpectrumWords& words = choice.words;
+    const report::SpectrumMethod& words = choice.method;
     analysis::SpectrumSettings settings;
     settings.record = choice.settings();
     for (const auto& [name, kind] : windows)
@@ -65,14 +93,14 @@ analysis::SpectrumSettings settings_of(const SpectrumChoice& choice, bool overla
     settings.is_density = words.scaling != "spectrum";
     settings.segment = choice.segment;
     settings.overlap = choice.overlap.value_or(0.5);
-    settings.fundamental = parse_band(choice.fundamental, "--fundamental");
-    if (!choice.envelope.empty()) settings.envelope = parse_band(choice.envelope, "--envelope");
+    settings.fundamental = parse_band(choice.method.fundamental, "--fundamental");
+    if (!words.envelope.empty()) settings.envelope = parse_band(words.envelope, "--envelope");
     settings.orders = choice.orders;
     settings.octave_filters = choice.octaves == "octave" ? 1 : choice.octaves == "third" ? 3 : 0;
     settings.integrations = choice.integrate == "velocity" ? 1 : choice.integrate == "displacement" ? 2 : 0;
     settings.high_pass = choice.high_pass;
     settings.only_psd = choice.only_psd;
-    settings.spectrogram = (!choice.plot.empty() && !overlay) || !choice.report.empty();
+    settings.spectrogram = (!choice.plot.empty() && !overlay) || choice.result.shows_figures();
     for (const std::string& mark : choice.marks) settings.marks.push_back(analysis::parse_mark(mark));
     return settings;
 }
@@ -82,11 +110,14 @@ report::PlottedBand plotted_band(const SpectrumChoice& choice) {
 }
 
 report::SpectrumMethod method_of(const SpectrumChoice& choice) {
-    return {choice.words.window, choice.words.detrend, choice.words.average,         choice.words.scaling,
-            choice.envelope,     choice.fundamental,   choice.overlap.value_or(0.5), plotted_band(choice)};
+    report::SpectrumMethod method = choice.method;
+    method.overlap = choice.overlap.value_or(0.5);
+    method.cepstrum = !choice.cepstrum.empty();
+    method.band = plotted_band(choice);
+    return method;
 }
 
-Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
+Outcome analyse(const fs::path& path, const SpectrumChoice& choice, const report::SpectrumMethod& method, bool many,
                 const std::function<void(double)>& progress) {
     // Several files go into one figure, unless --plot names a folder.
     const bool overlay = many && report::is_figure_file(choice.plot);
@@ -97,30 +128,19 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
     if (!choice.csv.empty()) file::write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
     if (!choice.cepstrum.empty()) file::write_whole_file(output(choice.cepstrum, ".csv"), cepstrum_csv(file));
     if (!choice.plot.empty() && !overlay)
-        save_figure(report::draw_spectrum(file, plotted_band(choice)), output(choice.plot, ".svg"), choice.figure);
-    Outcome outcome{choice.json ? analysis_json(file, choice.words) : analysis_text(file, choice.words),
-                    analysis_rows(file),
-                    choice.report.empty() ? std::string() : report::analysis_section(file, method_of(choice)),
-                    {}};
+        save_figure(report::draw_spectrum(file, method.band), output(choice.plot, ".svg"), choice.result.figure);
+    Outcome outcome{report::spectrum_result(file, method, choice.result.shows_figures()), {}, {}};
+    if (!choice.table.empty()) outcome.table = report::spectrum_rows(file, method);
     if (overlay) outcome.drawn = std::move(file);
     return outcome;
 }
 
-void print_json(const std::vector<fs::path>& files, const std::vector<Outcome>& outcomes,
-                const std::vector<std::string>& failures) {
-    file::Json all = file::Json::array();
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        if (failures[i].empty()) all.push_back(file::Json::parse(outcomes[i].text));
-        else all.push_back({{"file", files[i].string()}, {"error", failures[i]}});
-    }
-    fmt::print("{}\n", file::Json{{"version", 1}, {"rows", all}}.dump(2));
-}
-
 int spectrum(const SpectrumChoice& choice) {
+    check_result_files(choice.result);
     const std::vector<fs::path> files = analysis::expand_folders(choice.files);
     const bool many = files.size() > 1;
     settings_of(choice, false);  // refuses what cannot be read, before the files are
-    plotted_band(choice);
+    const report::SpectrumMethod method = method_of(choice);
     if (many)
         for (const fs::path& folder : {choice.csv, choice.plot, choice.cepstrum})
             if (!folder.empty() && !(folder == choice.plot && report::is_figure_file(folder)))
@@ -128,42 +148,34 @@ int spectrum(const SpectrumChoice& choice) {
     std::vector<Outcome> outcomes(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
-            outcomes[i] = analyse(files[i], choice, many, progress);
+            outcomes[i] = analyse(files[i], choice, method, many, progress);
         });
     const bool bad = tell_failures(failures) > 0;
     if (many && report::is_figure_file(choice.plot)) {
         std::vector<analysis::AnalysedFile> drawn;
         for (Outcome& outcome : outcomes)
             if (outcome.drawn) drawn.push_back(std::move(*outcome.drawn));
-        if (!drawn.empty()) save_figure(report::draw_overlay(drawn, plotted_band(choice)), choice.plot, choice.figure);
+        if (!drawn.empty()) save_figure(report::draw_overlay(drawn, method.band), choice.plot, choice.result.figure);
     }
-    if (choice.json) print_json(files, outcomes, failures);
-    else
-        for (const Outcome& outcome : outcomes) fmt::print("{}", outcome.text);
-    if (!choice.table.empty()) {
-        std::string table = analysis_heading;
-        for (std::size_t i = 0; i < files.size(); ++i)
-            table += failures[i].empty()
-                         ? outcomes[i].table
-                         : fmt::format("{},,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(failures[i]));
-        file::write_whole_file(choice.table, table);
+    report::Spectra found{{}, &method};
+    std::vector<file::Json> table;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const std::string name = files[i].string();
+        const bool is_read = failures[i].empty();
+        found.records.push_back(is_read ? std::move(outcomes[i].result) : report::unread_spectrum(name, failures[i]));
+        if (!is_read) table.push_back({{"file", name}, {"error", failures[i]}});
+        for (file::Json& row : outcomes[i].table) table.push_back(std::move(row));
     }
-    if (!choice.report.empty()) {
-        std::string body;
-        for (std::size_t i = 0; i < files.size(); ++i)
-            body += failures[i].empty() ? outcomes[i].section
-                                        : fmt::format("<p class=\"fail\">{}</p>\n", html::escaped(failures[i]));
-        file::write_whole_file(choice.report,
-                               html::page(many ? "Vibration of " + std::to_string(files.size()) + " records"
-                                               : files.front().filename().string(),
-                                          body + report::analysis_method(method_of(choice))));
-    }
+    if (!choice.table.empty()) file::write_whole_file(choice.table, report::csv_table(report::spectrum_columns, table));
+    // Of one bad file only its error is printed.
+    if (!bad || many || choice.result.json) write_result(report::spectrum_fields().of(found), choice.result);
     return bad ? bad_input : done;
 }
 
 Action declare_spectrum(VerbOptions& verb) {
     const auto choice = std::make_shared<SpectrumChoice>();
-    SpectrumWords& words = choice->words;
+    report::SpectrumMethod& words = choice->method;
+    words.fundamental = "5:1000";
     add_record_options(verb, *choice, "sound files, CSV logs, or folders of them");
     verb.add("--window", words.window, "window function")
         .shows_default()
@@ -177,8 +189,8 @@ Action declare_spectrum(VerbOptions& verb) {
     verb.add("--scaling", words.scaling, "density: unit^2/Hz, spectrum: unit^2")
         .shows_default()
         .one_of({"density", "spectrum"});
-    verb.add("--envelope", choice->envelope, "LOW:HIGH in Hz: spectrum of the envelope of this band");
-    verb.add("--fundamental", choice->fundamental, "LOW:HIGH in Hz: search range of the fundamental").shows_default();
+    verb.add("--envelope", words.envelope, "LOW:HIGH in Hz: spectrum of the envelope of this band");
+    verb.add("--fundamental", words.fundamental, "LOW:HIGH in Hz: search range of the fundamental").shows_default();
     verb.add("--orders", choice->orders, "rows of the harmonic table").shows_default().range(1, 200);
     verb.add("--octave-filters", choice->octaves,
              "levels by filters of IEC 61260-1, class 1, of an octave or a third, up to 0.24 times the sample rate")
@@ -196,7 +208,8 @@ Action declare_spectrum(VerbOptions& verb) {
     verb.add("--csv", choice->csv, "CSV file with frequency and spectrum per channel; for several files: a folder");
     verb.add("--plot", choice->plot,
              "figure, .svg, .png or .pdf: several files in one plot; or a folder for a figure of each");
-    add_figure_options(verb, choice->figure);
+    add_result_options(verb, choice->result, ResultFigure::some);
+    verb.old("--report", "--out");
     verb.add("--band", choice->band, "plotted range, Hz (default: 20 Hz to half the sample rate)")
         .value_name("LOW:HIGH");
     verb.add("--mark", choice->marks,
@@ -205,20 +218,19 @@ Action declare_spectrum(VerbOptions& verb) {
         .value_name("FREQUENCY:LABEL[:HARMONICS]")
         .one_each();
     verb.add("--table", choice->table, "CSV file with one row per file and channel");
-    verb.add("--report", choice->report, "HTML file with figures, tables and methods");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
-    for (const char* other :
-         {"--octave-filters", "--cepstrum", "--envelope", "--plot", "--mark", "--table", "--report"})
+    for (const char* other : {"--octave-filters", "--cepstrum", "--envelope", "--plot", "--mark", "--table"})
         verb.find(other).excludes(only_psd);
-    verb.check([choice] { choice->words.cepstrum = !choice->cepstrum.empty(); });
     return [choice] { return spectrum(*choice); };
 }
 
 }  // namespace
 
 Verb spectrum_verb() {
-    return {"spectrum", "analyse a vibration record: spectrum, fundamental, harmonics, hum, bands, envelope",
-            declare_spectrum};
+    return {.name = "spectrum",
+            .about = "analyse a vibration record: spectrum, fundamental, harmonics, hum, bands, envelope",
+            .add = declare_spectrum,
+            .schema = [] { return report::schema_of_output({report::spectrum_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

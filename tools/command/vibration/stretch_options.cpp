@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/stretch_options.hpp"
 
-#include "tools/report/result/printers.hpp"
-#include "tools/report/vibration/record_fields.hpp"
-
 #include <algorithm>
 #include <string>
 
@@ -30,10 +27,6 @@ sound::Stretch stretch_of(const StretchChoice& choice, std::size_t record) {
         return values.empty() ? otherwise : values[std::min(record, values.size() - 1)];
     };
     return {pick(choice.from, 0.0), pick(choice.to, sound::Stretch::to_the_end)};
-}
-
-file::Json stretch_json(const sound::ReadStretch& stretch) {
-    return report::json_of(report::stretch_fields().of(stretch));
 }
 
 }  // namespace tactus::command

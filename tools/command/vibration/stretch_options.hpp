@@ -2,7 +2,6 @@
 // --from and --to: the stretch of a record that a verb analyses.
 #pragma once
 
-#include "assets/file/json.hpp"
 #include "assets/sound/stretch.hpp"
 #include "tools/command/options.hpp"
 
@@ -20,8 +19,5 @@ void add_stretch_options(VerbOptions& verb, StretchChoice& choice, StretchOf of 
 
 /// Of record 0, or 1 of two. One value is for both.
 sound::Stretch stretch_of(const StretchChoice& choice, std::size_t record = 0);
-
-/// {"from_s", "to_s", "of_s"}
-file::Json stretch_json(const sound::ReadStretch& stretch);
 
 }  // namespace tactus::command

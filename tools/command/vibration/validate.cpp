@@ -5,19 +5,21 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/command/batch.hpp"
-#include "tools/command/figure_options.hpp"
 #include "tools/command/patch_options.hpp"
-#include "tools/command/vibration/comparison_text.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
-#include "tools/command/vibration/validation_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/comparison_figure.hpp"
-#include "tools/report/figures/validation_page.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/report/vibration/comparison_result.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace tactus::command {
 
@@ -25,56 +27,15 @@ namespace {
 
 using analysis::Validation;
 using analysis::ValidationRun;
-using file::Json;
 
 struct ValidateChoice {
     analysis::ValidateSettings settings;
-    std::filesystem::path thresholds, report, plot, table;
+    std::filesystem::path thresholds, plot, table;
     std::string touch = "displacement";
     StretchChoice stretch;
     int jobs = 0;  // runs at a time, 0: one per core
-    bool json = false;
+    ResultChoice result;
 };
-
-Json run_json(const ValidationRun& run) {
-    Json json{{"file", run.recording->file.string()},
-              {"state", run.recording->cutting ? "cutting" : "free_air"},
-              {"rate_hz", run.recording->rate},
-              {"load_N", run.recording->load},
-              {"level_db", run.level_db},
-              {"drive_rms_v", run.drive_rms ? Json(*run.drive_rms) : Json()},
-              {"drive_peak_v", run.drive_peak ? Json(*run.drive_peak) : Json()}};
-    if (!run.failure.empty()) json["error"] = run.failure;
-    else json.update(Json::parse(comparison_json(run.pair)));
-    return json;
-}
-
-std::string json_text(const Validation& validation, const analysis::ValidateSettings& settings,
-                      const VerdictCounts& count) {
-    Json json{{"patch", validation.patch},
-              {"set", validation.set->path.string()},
-              {"synthesised", validation.set->synthesised},
-              {"calibrated", validation.set->calibrated()},
-              {"out", validation.path.out},
-              {"stretch_of_run", {{"from_s", settings.from}, {"to_s", settings.from + settings.seconds}}},
-              {"verdict", count.failed + count.bad == 0 ? "pass" : "fail"},
-              {"passed", count.passed},
-              {"failed", count.failed},
-              {"bad", count.bad},
-              {"runs", Json::array()}};
-    for (const ValidationRun& run : validation.runs) json["runs"].push_back(run_json(run));
-    return json.dump(2) + "\n";
-}
-
-void print(const Validation& validation, const analysis::ValidateSettings& settings, const VerdictCounts& count) {
-    fmt::print("{} at {}, beside {}{}\n", validation.patch, validation.path.out, validation.set->path.string(),
-               validation.set->synthesised ? " (synthesised, no recordings)" : "");
-    fmt::print("compared: {} to {} s of each run, with the stretch of the recording that was played then\n",
-               plain(settings.from, 6), plain(settings.from + settings.seconds, 6));
-    fmt::print("{}", validation_rows(validation));
-    fmt::print("{}: {} of {} have the vibration of their recording\n", count.failed + count.bad == 0 ? "PASS" : "FAIL",
-               count.passed, validation.runs.size());
-}
 
 /// --from and --to are of each run; the recording is compared in the stretch that was played then.
 void choose_stretch(const StretchChoice& choice, analysis::ValidateSettings& settings) {
@@ -88,12 +49,13 @@ void choose_stretch(const StretchChoice& choice, analysis::ValidateSettings& set
 }
 
 int validate(const ValidateChoice& choice) {
+    check_result_files(choice.result);
     analysis::ValidateSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
-    settings.touch = touch_of(choice.touch);
+    settings.touch = analysis::touch_of(choice.touch);
     choose_stretch(choice.stretch, settings);
     Validation validation = analysis::plan_validation(settings);
-    const bool pictures = !choice.report.empty() || !choice.plot.empty();
+    const bool pictures = choice.result.shows_figures() || !choice.plot.empty();
     if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
     const std::vector<std::string> failures = run_batch(
         validation.runs.size(), choice.jobs, "runs",
@@ -102,21 +64,30 @@ int validate(const ValidateChoice& choice) {
             analysis::validate(validation, i, settings,
                                pictures && validation.runs[i].level_db == settings.levels.front());
         });
-    VerdictCounts count;
-    count.bad = tell_failures(failures);
+    tell_failures(failures);
     for (std::size_t i = 0; i < failures.size(); ++i) {
         ValidationRun& run = validation.runs[i];
         run.failure = failures[i];
-        if (!run.failure.empty()) continue;
-        ++(run.pair.verdict.passed() ? count.passed : count.failed);
-        if (!choice.plot.empty())
+        if (run.failure.empty() && !choice.plot.empty())
             save_figure(report::draw_comparison(run.pair), choice.plot / (run.file_name() + ".svg"), {});
     }
-    if (!choice.table.empty()) file::write_whole_file(choice.table, validation_csv(validation));
-    if (!choice.report.empty()) file::write_whole_file(choice.report, report::validation_page(validation));
-    if (choice.json) fmt::print("{}", json_text(validation, settings, count));
-    else print(validation, settings, count);
-    return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
+    if (!choice.table.empty()) file::write_whole_file(choice.table, report::validation_table(validation));
+    const report::ValidatedRuns found{&validation, &settings};
+    write_result(report::validation_fields().of(found), choice.result);
+    const report::VerdictCounts counts = found.counts();
+    return counts.bad > 0 ? bad_input : counts.failed > 0 ? answer_is_no : done;
+}
+
+/// Old spelling: `--out` was the port. It applies to a value that is no file for a result.
+void port_was_out(std::vector<std::string>& words) {
+    constexpr std::string_view joined = "--out=";
+    for (std::size_t n = 0; n < words.size(); ++n) {
+        std::string& word = words[n];
+        const bool is_joined = word.starts_with(joined);
+        if (!is_joined && (word != "--out" || n + 1 == words.size())) continue;
+        const std::string value = is_joined ? word.substr(joined.size()) : words[n + 1];
+        if (!is_result_file(value)) word.replace(0, 5, "--probe");
+    }
 }
 
 Action declare_validate(VerbOptions& verb) {
@@ -146,21 +117,24 @@ Action declare_validate(VerbOptions& verb) {
     verb.add("--touch", choice->touch, "quantity of the threshold of touch")
         .shows_default()
         .one_of({"displacement", "acceleration", "none"});
-    verb.add("--report", choice->report, "HTML file with figures, tables and methods");
+    add_result_options(verb, choice->result, ResultFigure::some);
+    verb.old("--report", "--out");
     verb.add("--plot", choice->plot, "folder for SVG figures of the runs");
     verb.add("--table", choice->table, "CSV file with one row per run");
     verb.add("--jobs", choice->jobs, "runs at a time, 0: one per core").range(0, 256);
-    verb.flag("--json", choice->json, "as JSON");
-    verb.old("--out", "--probe");
+    verb.old(port_was_out);
     return [choice] { return validate(*choice); };
 }
 
 }  // namespace
 
 Verb validate_verb() {
-    return {"validate",
-            "judge whether the handle vibrates like the saw at every recorded rate and load; exit code 0: yes, 1: no",
-            declare_validate};
+    return {.name = "validate",
+            .about =
+                "judge whether the handle vibrates like the saw at every recorded rate and load; exit code 0: yes, 1: "
+                "no",
+            .add = declare_validate,
+            .schema = [] { return report::schema_of_output({report::validation_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

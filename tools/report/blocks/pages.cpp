@@ -113,8 +113,8 @@ public:
 
     void add(const Heading& h) {
         need(60.0);
-        y_ += 12.0;
-        paragraph(h.text, 13.0, true, h.is_warning);
+        y_ += h.depth > 1 ? 8.0 : 12.0;
+        paragraph(h.text, h.depth > 1 ? 11.0 : 13.0, true, h.is_warning);
     }
     void add(const Paragraph& p) { paragraph(p.text, 9.5, false, p.is_warning); }
     void add(const ReportList& l) {
@@ -138,7 +138,10 @@ public:
     }
 
     void add(const Drawing& d) {
-        const double scale = std::min({points_per_pixel, inside / d.figure.width(), max_drawing / d.figure.height()});
+        // Panels below each other get a page of their own.
+        const bool is_tall = d.figure.height() > 1.1 * d.figure.width();
+        const double high = is_tall ? bottom - top - 3.0 * line_of(caption_size) : max_drawing;
+        const double scale = std::min({points_per_pixel, inside / d.figure.width(), high / d.figure.height()});
         captioned(d.figure, scale, d.caption);
     }
     void add(const render::LabelledPicture& p) {

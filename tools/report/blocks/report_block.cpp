@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tactus::report {
 
 namespace {
@@ -71,7 +73,8 @@ std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark) 
     for (const ReportBlock& block : blocks)
         out += std::visit(
             Visit{[](const Heading& h) {
-                      return fmt::format("<h2{}>{}</h2>\n", h.is_warning ? fail : "", html::escaped(h.text));
+                      return fmt::format("<h{0}{1}>{2}</h{0}>\n", std::clamp(h.depth, 1, 3) + 1,
+                                         h.is_warning ? fail : "", html::escaped(h.text));
                   },
                   [](const Paragraph& p) {
                       return fmt::format("<p{}>{}</p>\n", p.is_warning ? fail : "", html::escaped(p.text));

@@ -15,6 +15,7 @@ namespace tactus::report {
 struct Heading {
     std::string text;
     bool is_warning = false;
+    int depth = 1;  ///< 2 and more: within a section
 };
 
 struct Paragraph {

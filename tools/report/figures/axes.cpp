@@ -43,18 +43,26 @@ display::FigurePoint Axes::at(double a, double b) const {
 }
 
 void Axes::draw(const std::string& title, const std::string& unit_across, const std::string& unit_up) const {
+    const double text = style.text;
+    double taken = -1e9;  // right end of the last number
     for (const double v : across.ticks()) {
-        figure.line({{at(v, up.low).x, y}, {at(v, up.low).x, y + height}}, grid, 0.8);
-        figure.text({at(v, up.low).x, y + height + 13.0}, axis_number(v), 10.0, ink, display::TextAnchor::middle);
+        const double at_x = at(v, up.low).x;
+        figure.line({{at_x, y}, {at_x, y + height}}, grid, 0.8);
+        const std::string number = axis_number(v);
+        const double half = 0.3 * text * static_cast<double>(number.size());
+        if (at_x - half < taken) continue;
+        figure.text({at_x, y + height + 1.3 * text}, number, text, ink, display::TextAnchor::middle);
+        taken = at_x + half + 0.4 * text;
     }
     for (const double v : up.ticks()) {
         figure.line({{x, at(across.low, v).y}, {x + width, at(across.low, v).y}}, grid, 0.8);
-        figure.text({x - 5.0, at(across.low, v).y + 3.5}, axis_number(v), 10.0, ink, display::TextAnchor::end);
+        figure.text({x - 0.5 * text, at(across.low, v).y + 0.35 * text}, axis_number(v), text, ink,
+                    display::TextAnchor::end);
     }
     figure.line({{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}, {x, y}}, frame, 1.0);
-    figure.text({x, y - 6.0}, title, 11.0, ink, display::TextAnchor::start, true);
-    figure.text({x + width, y + height + 26.0}, unit_across, 10.0, soft, display::TextAnchor::end);
-    figure.text({x - 36.0, y + 0.5 * height}, unit_up, 10.0, soft, display::TextAnchor::middle, false, true);
+    figure.text({x, y - 0.6 * text}, title, style.title, ink, display::TextAnchor::start, true);
+    figure.text({x + width, y + height + 2.6 * text}, unit_across, text, soft, display::TextAnchor::end);
+    figure.text({x - 3.6 * text, y + 0.5 * height}, unit_up, text, soft, display::TextAnchor::middle, false, true);
 }
 
 void Axes::curve(const std::vector<display::FigurePoint>& values, display::Colour colour, double dash,
@@ -72,8 +80,12 @@ void Axes::level(double value, display::Colour colour, const std::string& word, 
     curve({{across.low, value}, {across.high, value}}, colour, 4.0, false);
     if (word.empty()) return;
     const double line = at(across.low, value).y;
-    if (below) figure.text({x + 4.0, line + 11.0}, word, 10.0, colour, display::TextAnchor::start);
-    else figure.text({x + width - 4.0, line - 3.0}, word, 10.0, colour, display::TextAnchor::end);
+    if (below)
+        figure.text({x + 4.0, line + 1.1 * style.text}, word, style.text, colour, display::TextAnchor::start, false,
+                    false, true);
+    else
+        figure.text({x + width - 4.0, line - 3.0}, word, style.text, colour, display::TextAnchor::end, false, false,
+                    true);
 }
 
 }  // namespace tactus::report

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "devices/display/figure.hpp"
+#include "tools/report/figures/figure_style.hpp"
 
 #include <array>
 #include <string>
@@ -10,8 +11,9 @@
 
 namespace tactus::report {
 
+/// Blue, vermilion, green and purple of Okabe and Ito (2008), distinct with every kind of colour blindness.
 inline constexpr std::array<display::Colour, 4> curve_colours{
-    {{0x1F, 0x4E, 0x9E}, {0xB8, 0x1D, 0x24}, {0x1B, 0x7A, 0x3D}, {0x8A, 0x5A, 0x00}}};
+    {{0x00, 0x72, 0xB2}, {0xD5, 0x5E, 0x00}, {0x00, 0x9E, 0x73}, {0xCC, 0x79, 0xA7}}};
 inline constexpr display::Colour axis_ink{0x22, 0x26, 0x2E}, axis_soft{0x6B, 0x72, 0x80};
 
 struct Scale {
@@ -27,6 +29,7 @@ struct Axes {
     display::Figure& figure;
     double x, y, width, height;  ///< the inner rectangle, in units of the figure
     Scale across, up;
+    const FigureStyle& style = screen_style;
 
     display::FigurePoint at(double a, double b) const;
     /// Grid, ticks, numbers, title and units.

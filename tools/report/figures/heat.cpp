@@ -24,14 +24,14 @@ int heat_shade(double share) { return static_cast<int>(std::clamp(share, 0.0, 1.
 
 display::Colour heat_of_shade(int shade) { return heat(static_cast<double>(shade) / (heat_shades - 1)); }
 
-void draw_heat_scale(display::Figure& figure, double x, double y, double height, double low, double high) {
+void draw_heat_scale(display::Figure& figure, double x, double y, double height, double low, double high, double text) {
     constexpr display::Colour ink{0x22, 0x26, 0x2E};
     for (int i = 0; i < heat_shades; ++i)
         figure.rectangle(x, y + height - height * (i + 1) / heat_shades, 12.0, height / heat_shades + 0.4,
                          heat_of_shade(i));
     for (int i = 0; i <= 3; ++i)
-        figure.text({x + 16.0, y + height - height * i / 3.0 + 4.0},
-                    fmt::format("{:.0f} dB", low + (high - low) * i / 3.0), 10.0, ink);
+        figure.text({x + 16.0, y + height - height * i / 3.0 + 0.4 * text},
+                    fmt::format("{:.0f} dB", low + (high - low) * i / 3.0), text, ink);
 }
 
 }  // namespace tactus::report

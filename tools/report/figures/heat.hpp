@@ -15,7 +15,8 @@ display::Colour heat(double share);
 int heat_shade(double share);
 display::Colour heat_of_shade(int shade);
 
-/// A bar of all shades with four numbers, `low` to `high` dB from the bottom to the top.
-void draw_heat_scale(display::Figure& figure, double x, double y, double height, double low, double high);
+/// A bar of all shades with four numbers of this size, `low` to `high` dB from the bottom to the top.
+void draw_heat_scale(display::Figure& figure, double x, double y, double height, double low, double high,
+                     double text = 10.0);
 
 }  // namespace tactus::report

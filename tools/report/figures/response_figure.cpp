@@ -15,9 +15,6 @@ namespace tactus::report {
 
 namespace {
 
-constexpr double left = 70.0, width = 640.0, right = 30.0, level_height = 220.0, phase_height = 130.0,
-                 coherence_height = 110.0, gap = 50.0;
-
 /// Runs of neighbouring bins in which `holds`, each as one curve.
 void draw_runs(const Axes& axes, const analysis::TwoChannels& found, display::Colour colour, double dash,
                const std::function<bool(std::size_t)>& holds, const std::function<double(std::size_t)>& value) {
@@ -34,13 +31,18 @@ void draw_runs(const Axes& axes, const analysis::TwoChannels& found, display::Co
 
 }  // namespace
 
-display::Figure draw_response(const analysis::TwoChannels& found, const std::filesystem::path& file) {
-    display::Figure figure(left + width + right, 60.0 + level_height + phase_height + coherence_height + 3.0 * gap);
-    figure.text({left, 24.0}, file.filename().string(), 15.0, axis_ink, display::TextAnchor::start, true);
-    figure.text({left + width, 24.0},
+display::Figure draw_response(const analysis::TwoChannels& found, const std::filesystem::path& file,
+                              const FigureStyle& style) {
+    const double left = style.left, width = style.panel_width(), gap = style.gap(50.0), top = style.gap(62.0),
+                 level_height = style.height(220.0), phase_height = style.height(130.0),
+                 coherence_height = style.height(110.0);
+    display::Figure figure(style.width, top + level_height + phase_height + coherence_height + 2.6 * gap);
+    figure.text({left, style.gap(22.0)}, file.filename().string(), style.heading, axis_ink, display::TextAnchor::start,
+                true);
+    figure.text({left, style.gap(37.0)},
                 fmt::format("{} to {}; Welch, {} segments, bandwidth {}", found.input, found.output,
                             found.spectra.segments, readable(found.spectra.noise_bandwidth, "Hz")),
-                10.0, axis_soft, display::TextAnchor::end);
+                style.text, axis_soft);
     const auto is_coherent = [&](std::size_t k) { return found.coherence[k] >= 0.5; };
     const auto db = [](const std::complex<double>& h) { return 20.0 * std::log10(std::max(std::abs(h), 1e-15)); };
     const std::vector<std::complex<double>>& chosen = found.chosen();
@@ -56,8 +58,8 @@ display::Figure draw_response(const analysis::TwoChannels& found, const std::fil
     low = std::max(low, high - 80.0);
     const Scale hz{low_hz, found.usable, true};
     const char* const names[] = {"H1", "H2", "Hv"};
-    double y = 56.0;
-    const Axes level{figure, left, y, width, level_height, hz, {low - 3.0, high + 3.0, false}};
+    double y = top;
+    const Axes level{figure, left, y, width, level_height, hz, {low - 3.0, high + 3.0, false}, style};
     level.draw(fmt::format("{}{}", names[static_cast<int>(found.estimator)],
                            found.estimator == analysis::Estimator::hv ? "; dashed: H1 (lower) and H2" : ""),
                "", "dB");
@@ -67,7 +69,7 @@ display::Figure draw_response(const analysis::TwoChannels& found, const std::fil
     }
     draw_runs(level, found, curve_colours[0], 0.0, is_coherent, [&](std::size_t k) { return db(chosen[k]); });
     y += level_height + gap;
-    const Axes phase{figure, left, y, width, phase_height, hz, {-180.0, 180.0, false, 90.0}};
+    const Axes phase{figure, left, y, width, phase_height, hz, {-180.0, 180.0, false, 90.0}, style};
     phase.draw("phase", "", "degrees");
     // A step of more than half a turn between bins is a wrap, no slope: the curve breaks there.
     const auto degrees = [&](std::size_t k) { return std::arg(chosen[k]) * 180.0 / pi; };
@@ -80,12 +82,12 @@ display::Figure draw_response(const analysis::TwoChannels& found, const std::fil
         begin = k;
     }
     y += phase_height + gap;
-    const Axes coherence{figure, left, y, width, coherence_height, hz, {0.0, 1.0, false, 0.25}};
+    const Axes coherence{figure, left, y, width, coherence_height, hz, {0.0, 1.0, false, 0.25}, style};
     coherence.draw("coherence", "frequency, Hz", "");
-    coherence.level(found.noise_coherence, axis_soft, "unrelated noise");
     draw_runs(
         coherence, found, curve_colours[0], 0.0, [](std::size_t) { return true; },
         [&](std::size_t k) { return found.coherence[k]; });
+    coherence.level(found.noise_coherence, axis_soft, "unrelated noise");
     return figure;
 }
 

@@ -15,7 +15,23 @@ namespace tactus::report {
 
 namespace {
 
-constexpr double left = 70.0, width = 560.0, height = 340.0, gap = 30.0, rate_width = 110.0, right = 60.0, each = 420.0;
+/// Places of the panels of a channel.
+struct Layout {
+    Layout(const FigureStyle& s, bool has_rate)
+        : style(s),
+          height(s.height(340.0)),
+          each(height + s.gap(60.0)),
+          scale(s.gap(60.0)),
+          gap(s.gap(50.0)),
+          rate_width(has_rate ? 0.17 * s.panel_width() : 0.0),
+          width(s.panel_width() - scale - (has_rate ? gap + rate_width : 0.0)) {}
+
+    const FigureStyle& style;
+    double height, each, scale, gap, rate_width, width;  ///< scale: of the colours, at the right
+    double top() const { return style.gap(62.0); }
+};
+
+constexpr FigureStyle wide_screen{904.0, 70.0, 30.0, 10.0, 11.0, 15.0, 1.0};
 constexpr double depth = 60.0;  // dB
 constexpr display::Colour order_ink{0xC8, 0xCC, 0xD2};
 constexpr std::size_t max_rows = 150, max_columns = 220;  // cells of a picture
@@ -91,6 +107,7 @@ void draw_cells(display::Figure& figure, const Axes& axes, const analysis::Water
 /// Lines of the orders over frequency, which make rows of one rate each a Campbell diagram: a resonance stands upright,
 /// an order runs along its line. The lines are broken, so that the levels show between.
 void draw_orders(display::Figure& figure, const Axes& axes, const analysis::Waterfall& w, int highest) {
+    const double text = 0.9 * axes.style.text;
     figure.clip(axes.x, axes.y, axes.width, axes.height);
     for (int order = 1; order <= highest; ++order) {
         std::vector<display::FigurePoint> line;
@@ -107,14 +124,16 @@ void draw_orders(display::Figure& figure, const Axes& axes, const analysis::Wate
         const double hz = order * w.rows.back().rate;
         if (hz > axes.across.high) break;
         const double x = axes.at(hz, 0.0).x;
-        if (x < taken + 22.0) continue;
-        figure.text({x - 3.0, axes.y + 11.0}, fmt::format("×{}", order), 9.0, order_ink, display::TextAnchor::end);
+        if (x < taken + 2.4 * text) continue;
+        figure.text({x - 3.0, axes.y + 1.2 * text}, fmt::format("×{}", order), std::max(text, journal_style.text),
+                    order_ink, display::TextAnchor::end);
         taken = x;
     }
 }
 
 void draw_channel(display::Figure& figure, const analysis::OrdersOfChannel& channel, const analysis::Orders& orders,
-                  double y) {
+                  const Layout& layout, double y) {
+    const double left = layout.style.left, width = layout.width, height = layout.height;
     const analysis::Waterfall& w = *channel.waterfall;
     const analysis::LevelReference reference = analysis::level_reference(orders.calibration);
     const Cells cells(w, reference);
@@ -122,8 +141,9 @@ void draw_channel(display::Figure& figure, const analysis::OrdersOfChannel& chan
     const double end = static_cast<double>(w.rows.front().rms.size() - 1) * w.step;
     const bool speed = w.settings.against_speed;
     const Scale up{edges.front(), edges.back(), false};
-    const Axes axes{figure, left, y, width, height, {0.0, end, false, w.settings.of_orders && end < 21.0 ? 1.0 : 0.0},
-                    up};
+    const Axes axes{figure, left,        y,
+                    width,  height,      {0.0, end, false, w.settings.of_orders && end < 21.0 ? 1.0 : 0.0},
+                    up,     layout.style};
     axes.draw(fmt::format("channel {}: rms, dB re {}", channel.name, reference.text),
               w.settings.of_orders ? "order" : "frequency, Hz", speed ? "rate, Hz" : "time, s");
     draw_cells(figure, axes, w, cells);
@@ -131,7 +151,7 @@ void draw_channel(display::Figure& figure, const analysis::OrdersOfChannel& chan
     // The ticks again, over the colours.
     for (const double v : axes.across.ticks())
         figure.line({{axes.at(v, up.low).x, y + height}, {axes.at(v, up.low).x, y + height - 4.0}}, axis_ink, 1.0);
-    double scale_at = left + width + 14.0;
+    double scale_at = left + width + layout.style.gap(14.0);
     if (!speed) {
         std::vector<display::FigurePoint> rates;
         double lowest = 1e300, highest = 0.0;
@@ -141,30 +161,34 @@ void draw_channel(display::Figure& figure, const analysis::OrdersOfChannel& chan
             highest = std::max(highest, row.rate);
         }
         const double margin = std::max(0.05 * (highest - lowest), 0.01 * highest);
-        const Axes beside{
-            figure, left + width + gap + 20.0, y, rate_width, height, {lowest - margin, highest + margin, false}, up};
+        const Axes beside{figure, left + width + layout.gap,
+                          y,      layout.rate_width,
+                          height, {lowest - margin, highest + margin, false},
+                          up,     layout.style};
         beside.draw("rate", "Hz", "");
         beside.curve(rates, curve_colours[0], 0.0, false);
-        scale_at = left + width + gap + 20.0 + rate_width + 14.0;
+        scale_at += layout.gap + layout.rate_width;
     }
-    draw_heat_scale(figure, scale_at, y, height, cells.top - depth, cells.top);
+    draw_heat_scale(figure, scale_at, y, height, cells.top - depth, cells.top, layout.style.text);
 }
 
 }  // namespace
 
-display::Figure draw_waterfall(const analysis::Orders& orders, const std::filesystem::path& file) {
+display::Figure draw_waterfall(const analysis::Orders& orders, const std::filesystem::path& file,
+                               const FigureStyle& given) {
     const std::size_t shown = std::min<std::size_t>(orders.channels.size(), 4);
-    const bool speed = orders.channels.front().waterfall->settings.against_speed;
-    const double beside = speed ? 0.0 : gap + 20.0 + rate_width;
-    display::Figure figure(left + width + beside + right + 14.0, 56.0 + each * static_cast<double>(shown));
-    figure.text({left, 22.0}, file.filename().string(), 15.0, axis_ink, display::TextAnchor::start, true);
-    figure.text({left + width + beside, 22.0},
+    const FigureStyle& style = given.width == screen_style.width ? wide_screen : given;
+    const Layout layout(style, !orders.channels.front().waterfall->settings.against_speed);
+    display::Figure figure(style.width, layout.top() + layout.each * static_cast<double>(shown));
+    figure.text({style.left, style.gap(22.0)}, file.filename().string(), style.heading, axis_ink,
+                display::TextAnchor::start, true);
+    figure.text({style.left, style.gap(37.0)},
                 fmt::format("{}, {} to {}; {}", orders.source, readable(orders.rate.low, "Hz", 4),
                             readable(orders.rate.high, "Hz", 4),
                             orders.stretch.is_whole() ? readable(orders.duration, "s", 4) : orders.stretch.text()),
-                10.0, axis_soft, display::TextAnchor::end);
+                style.text, axis_soft);
     for (std::size_t i = 0; i < shown; ++i)
-        draw_channel(figure, orders.channels[i], orders, 56.0 + each * static_cast<double>(i));
+        draw_channel(figure, orders.channels[i], orders, layout, layout.top() + layout.each * static_cast<double>(i));
     return figure;
 }
 

@@ -8,6 +8,8 @@
 //         return all;
 //     }
 //
+// `read` is a function of the struct, or a pointer to a member or member function: &Judged::value.
+//
 // A field has a key in JSON (empty: not in JSON), a name in print (empty: not printed) and a function that reads it. The
 // list exists without a value, so that the schema needs no example.
 #pragma once
@@ -15,7 +17,9 @@
 #include "assets/file/json.hpp"
 #include "tools/report/result/result.hpp"
 
+#include <algorithm>
 #include <concepts>
+#include <functional>
 #include <memory>
 #include <type_traits>
 
@@ -37,15 +41,16 @@ public:
     /// `read`: returns a Number, a double or an optional double.
     template <class Read>
     Fields& number(std::string key, std::string name, NumberFormat format, Read read) {
-        return add(std::move(key), std::move(name), schema_of_number,
-                   [read, format](const T& of) { return typename ResultEntry::Quantity{Number(read(of)), format}; });
+        return add(std::move(key), std::move(name), schema_of_number, [read, format](const T& of) {
+            return typename ResultEntry::Quantity{Number(std::invoke(read, of)), format};
+        });
     }
     template <class Read>
     Fields& integer(std::string key, std::string name, Read read) {
         return add(
             std::move(key), std::move(name), [] { return schema_or_null({{"type", "integer"}}); },
             [read](const T& of) {
-                const auto value = read(of);
+                const auto value = std::invoke(read, of);
                 if constexpr (std::integral<std::remove_cvref_t<decltype(value)>>)
                     return ResultEntry::Integer{static_cast<long long>(value)};
                 else return value ? ResultEntry::Integer{static_cast<long long>(*value)} : ResultEntry::Integer{};
@@ -56,25 +61,31 @@ public:
     Fields& range(std::string key, std::string name, NumberFormat format, Read read) {
         return add(
             std::move(key), std::move(name), [] { return schema_or_null(schema_of_list(schema_of_number())); },
-            [read, format](const T& of) { return ResultEntry::Range{read(of), format}; });
+            [read, format](const T& of) { return ResultEntry::Range{std::invoke(read, of), format}; });
     }
     /// `read`: a text, or an optional one.
     template <class Read>
     Fields& text(std::string key, std::string name, Read read) {
         return add(
             std::move(key), std::move(name), [] { return schema_or_null({{"type", "string"}}); },
-            [read](const T& of) { return ResultEntry::Text{read(of)}; });
+            [read](const T& of) { return ResultEntry::Text{std::invoke(read, of)}; });
     }
     template <class Read>
     Fields& flag(std::string key, std::string name, Read read) {
         return add(
             std::move(key), std::move(name), [] { return schema_or_null({{"type", "boolean"}}); },
-            [read](const T& of) { return ResultEntry::Flag{read(of)}; });
+            [read](const T& of) { return ResultEntry::Flag{std::invoke(read, of)}; });
     }
     template <class Read>
     Fields& texts(std::string key, std::string name, Read read) {
         return add(std::move(key), std::move(name), schema_of_texts,
-                   [read](const T& of) { return ResultEntry::Texts{read(of)}; });
+                   [read](const T& of) { return ResultEntry::Texts{std::invoke(read, of)}; });
+    }
+    /// Texts that are printed each on its own line.
+    template <class Read>
+    Fields& notes(std::string key, std::string name, Read read) {
+        return add(std::move(key), std::move(name), schema_of_texts,
+                   [read](const T& of) { return ResultEntry::Texts{std::invoke(read, of), true}; });
     }
     /// Texts that are printed before all other values.
     template <class Read>
@@ -88,15 +99,19 @@ public:
     Fields& series(std::string key, Read read) {
         return add(
             std::move(key), "", [] { return schema_of_list(schema_of_number()); },
-            [read](const T& of) -> ResultEntry::Series { return read(of); });
+            [read](const T& of) -> ResultEntry::Series { return std::invoke(read, of); });
     }
-    /// `draw`: a display::Figure; called when a format shows it, if `has` is true. The struct must live until then.
+    /// `draw`: a display::Figure of the struct and, if it has several, of a style; called when a format shows it, if `has` is true. The struct must live until then.
     template <class Has, class Draw>
     Fields& figure(std::string name, Has has, Draw draw) {
         return add(
             "", std::move(name), [] { return file::Json(); },
             [has, draw](const T& of) {
-                return has(of) ? ResultEntry::Picture{[draw, &of] { return draw(of); }} : ResultEntry::Picture{};
+                return has(of) ? ResultEntry::Picture{[draw, &of](const FigureStyle& style) {
+                    if constexpr (std::is_invocable_v<Draw, const T&, const FigureStyle&>) return draw(of, style);
+                    else return draw(of);
+                }}
+                               : ResultEntry::Picture{};
             });
     }
     /// A table: `read` returns a range of U, of which each is a row.
@@ -106,8 +121,29 @@ public:
             std::move(key), std::move(name), [&of_row] { return schema_of_list(of_row.schema()); },
             [read, &of_row](const T& of) {
                 ResultEntry::Rows made{{}, of_row.columns()};
-                for (const U& row : read(of)) made.rows.push_back(of_row.of(row));
+                for (const U& row : std::invoke(read, of)) made.rows.push_back(of_row.of(row));
                 return made;
+            });
+    }
+    /// A table whose columns depend on the value, printed only. `read`: a ResultEntry::Rows.
+    template <class Read>
+    Fields& table(std::string name, Read read) {
+        return add(
+            "", std::move(name), [] { return file::Json(); },
+            [read](const T& of) -> ResultEntry::Rows { return std::invoke(read, of); });
+    }
+    /// An object whose members depend on the value: `read` returns pairs of a key and an optional double.
+    template <class Read>
+    Fields& numbers(std::string key, Read read) {
+        return add(
+            std::move(key), "",
+            [] { return file::Json{{"type", "object"}, {"additionalProperties", schema_of_number()}}; },
+            [read](const T& of) {
+                Result members;
+                for (const auto& [name, value] : std::invoke(read, of))
+                    members.entries.push_back(
+                        {name, "", false, Severity::none, ResultEntry::Quantity{Number(value), NumberFormat{}}});
+                return ResultEntry::Children{{std::move(members)}, false};
             });
     }
     /// A section: `read` returns a U, a const U& or a pointer or optional to one.
@@ -117,7 +153,7 @@ public:
             std::move(key), std::move(name), [&of_child] { return schema_or_null(of_child.schema()); },
             [read, &of_child](const T& of) {
                 ResultEntry::Children made{{}, false};
-                decltype(auto) value = read(of);
+                decltype(auto) value = std::invoke(read, of);
                 if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, U>)
                     made.results.push_back(of_child.of(value));
                 else if (value) made.results.push_back(of_child.of(*value));
@@ -131,14 +167,60 @@ public:
             std::move(key), std::move(name), [&of_child] { return schema_of_list(of_child.schema()); },
             [read, &of_child](const T& of) {
                 ResultEntry::Children made{{}, true};
-                for (const U& one : read(of)) made.results.push_back(of_child.of(one));
+                for (const U& one : std::invoke(read, of)) made.results.push_back(of_child.of(one));
                 return made;
             });
+    }
+
+    /// The same of results that were made before, by `of_child`.
+    template <class U, class Read>
+    Fields& results(std::string key, std::string name, const Fields<U>& of_child, Read read) {
+        return add(
+            std::move(key), std::move(name), [&of_child] { return schema_of_list(of_child.schema()); },
+            [read](const T& of) { return ResultEntry::Children{std::invoke(read, of), true}; });
     }
 
     /// Of the last field: where its value is missing, JSON leaves it out.
     Fields& omitted() {
         fields_.back().is_omitted = true;
+        return *this;
+    }
+    /// The fields of a part of the struct, among those of the struct, and its title if the struct has none. `read` returns
+    /// a reference to the part, or a part whose views live as long as the struct.
+    template <class U, class Read>
+    Fields& part(const Fields<U>& of_part, Read read) {
+        for (const auto& field : of_part.fields_) {
+            Field made{field.key, field.name, field.schema,
+                       [read, inner = field.read](const T& of) { return inner(std::invoke(read, of)); }};
+            if (field.severity)
+                made.severity = [read, inner = field.severity](const T& of) { return inner(std::invoke(read, of)); };
+            if (field.where)
+                made.where = [read, inner = field.where](const T& of) { return inner(std::invoke(read, of)); };
+            made.is_omitted = field.is_omitted;
+            fields_.push_back(std::move(made));
+        }
+        if (!title_ && of_part.title_)
+            title_ = [read, inner = of_part.title_](const T& of) { return inner(std::invoke(read, of)); };
+        return *this;
+    }
+    /// What the last field means for the reader.
+    Fields& judged(std::function<Severity(const T&)> severity) {
+        fields_.back().severity = std::move(severity);
+        return *this;
+    }
+    /// Where the last field is printed; JSON and CSV contain it regardless.
+    Fields& printed(std::function<Where(const T&)> where) {
+        fields_.back().where = std::move(where);
+        return *this;
+    }
+    /// The last field is printed on pages only.
+    Fields& on_pages() {
+        return printed([](const T&) { return Where::pages; });
+    }
+    /// Describes the values for which `is_other` returns true, such as files that could not be read.
+    Fields& otherwise(std::function<bool(const T&)> is_other, const Fields<T>& other) {
+        is_other_ = std::move(is_other);
+        other_ = &other;
         return *this;
     }
     /// The title of the section.
@@ -148,10 +230,12 @@ public:
     }
     /// Views of the value live as long as it does.
     Result of(const T& value) const {
+        if (other_ && is_other_(value)) return other_->of(value);
         Result result{title_ ? title_(value) : std::string(), {}};
         for (const Field& field : fields_)
             result.entries.push_back({field.key, field.name, field.is_omitted,
-                                      field.severity ? field.severity(value) : Severity::none, field.read(value)});
+                                      field.severity ? field.severity(value) : Severity::none, field.read(value),
+                                      field.where ? field.where(value) : Where::everywhere});
         return result;
     }
     file::Json schema() const {
@@ -162,26 +246,34 @@ public:
             if (!field.name.empty()) properties[field.key]["description"] = field.name;
             if (!field.is_omitted) required.push_back(field.key);
         }
-        return {{"type", "object"},
-                {"description", about_},
-                {"properties", properties},
-                {"required", required},
-                {"additionalProperties", false}};
+        const file::Json own{{"type", "object"},
+                             {"description", about_},
+                             {"properties", properties},
+                             {"required", required},
+                             {"additionalProperties", false}};
+        return other_ ? file::Json{{"anyOf", file::Json::array({own, other_->schema()})}} : own;
     }
     /// Keys and names of the printed fields, as columns of a table.
     std::vector<std::pair<std::string, std::string>> columns() const {
         std::vector<std::pair<std::string, std::string>> all;
         for (const Field& field : fields_)
             if (!field.name.empty()) all.emplace_back(field.key, field.name);
+        if (other_)
+            for (auto& column : other_->columns())
+                if (std::ranges::find(all, column) == all.end()) all.push_back(std::move(column));
         return all;
     }
 
 private:
+    template <class U>
+    friend class Fields;
+
     struct Field {
         std::string key, name;
         std::function<file::Json()> schema;
         std::function<decltype(ResultEntry::value)(const T&)> read;
         std::function<Severity(const T&)> severity{};
+        std::function<Where(const T&)> where{};
         bool is_omitted = false;
     };
 
@@ -195,6 +287,8 @@ private:
     std::string about_;
     std::vector<Field> fields_;
     std::function<std::string(const T&)> title_{};
+    std::function<bool(const T&)> is_other_{};
+    const Fields<T>* other_ = nullptr;
 };
 
 }  // namespace tactus::report

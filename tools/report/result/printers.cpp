@@ -5,10 +5,11 @@
 #include "tools/report/result/fields.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <iterator>
 #include <utility>
 
 namespace tactus::report {
@@ -35,7 +36,12 @@ std::string padded(const std::string& text, std::size_t width, bool to_right) {
     return to_right ? space + text : text + space;
 }
 
-bool is_printed(const ResultEntry& entry) { return !entry.name.empty(); }
+enum class Medium { terminal, page };
+
+bool is_printed(const ResultEntry& entry, Medium medium) {
+    return !entry.name.empty() &&
+           (entry.where == Where::everywhere || (entry.where == Where::pages && medium == Medium::page));
+}
 
 template <class Kind>
 const Kind* as(const ResultEntry& entry) {
@@ -47,9 +53,26 @@ bool is_scalar(const ResultEntry& entry) {
            !as<ResultEntry::Series>(entry);
 }
 
-/// A name and a value on one line.
-bool is_line(const ResultEntry& entry) {
-    return is_printed(entry) && is_scalar(entry) && !is_missing(entry) && entry.severity != Severity::warning;
+/// A name and a value on one line, or, of texts that are apart, a line for each.
+bool is_line(const ResultEntry& entry, Medium medium) {
+    return is_printed(entry, medium) && is_scalar(entry) && !is_missing(entry) && entry.severity != Severity::warning;
+}
+
+/// Paragraphs of pages, under a heading.
+const ResultEntry::Texts* section_of_texts(const ResultEntry& entry) {
+    const auto* texts = as<ResultEntry::Texts>(entry);
+    return texts && texts->is_apart && entry.where == Where::pages ? texts : nullptr;
+}
+
+std::vector<std::string> lines_of(const ResultEntry& entry) {
+    const auto* texts = as<ResultEntry::Texts>(entry);
+    return texts && texts->is_apart ? texts->texts : std::vector{shown(entry)};
+}
+
+std::vector<std::string> warnings_of(const ResultEntry& entry, Medium medium) {
+    if (entry.severity != Severity::warning || is_missing(entry) || !is_printed(entry, medium)) return {};
+    const auto* texts = as<ResultEntry::Texts>(entry);
+    return texts ? texts->texts : std::vector{shown(entry)};
 }
 
 std::string_view unit_of(const ResultEntry& entry) {
@@ -131,13 +154,13 @@ std::string table_text(const Cells& cells, const std::string& indent) {
 
 void add_text(std::string& out, const Result& result, const std::string& indent) {
     for (const ResultEntry& entry : result.entries)
-        if (const auto* texts = as<ResultEntry::Texts>(entry); texts && entry.severity == Severity::warning)
-            for (const std::string& text : texts->texts) out += fmt::format("{}{}: {}\n", indent, entry.name, text);
+        for (const std::string& text : warnings_of(entry, Medium::terminal))
+            out += fmt::format("{}{}: {}\n", indent, entry.name, text);
     std::size_t width = 0;
     for (const ResultEntry& entry : result.entries)
-        if (is_line(entry)) width = std::max(width, width_of(entry.name));
+        if (is_line(entry, Medium::terminal)) width = std::max(width, width_of(entry.name));
     for (const ResultEntry& entry : result.entries) {
-        if (!is_printed(entry) || is_missing(entry)) continue;
+        if (!is_printed(entry, Medium::terminal) || is_missing(entry)) continue;
         if (const auto* rows = as<ResultEntry::Rows>(entry))
             out += fmt::format("{}{}\n{}", indent, entry.name, table_text(cells_of(*rows), indent + "  "));
         else if (const auto* children = as<ResultEntry::Children>(entry)) {
@@ -145,8 +168,9 @@ void add_text(std::string& out, const Result& result, const std::string& indent)
                 out += fmt::format("{}{}\n", indent, one.title.empty() ? entry.name : one.title);
                 add_text(out, one, indent + "  ");
             }
-        } else if (is_line(entry)) {
-            out += fmt::format("{}{}  {}\n", indent, padded(entry.name, width, false), shown(entry));
+        } else if (is_line(entry, Medium::terminal)) {
+            for (const std::string& line : lines_of(entry))
+                out += fmt::format("{}{}  {}\n", indent, padded(entry.name, width, false), line);
         }
     }
 }
@@ -183,32 +207,39 @@ Json value_json(const ResultEntry& entry) {
         entry.value);
 }
 
-void add_blocks(std::vector<ReportBlock>& out, const Result& result) {
+/// `title`: of the page, which is no heading again.
+void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, const std::string& title) {
     ReportList warnings{{}, true};
     ReportTable values{{"value", ""}, {}};
     for (const ResultEntry& entry : result.entries)
-        if (const auto* texts = as<ResultEntry::Texts>(entry); texts && entry.severity == Severity::warning)
-            std::ranges::copy(texts->texts, std::back_inserter(warnings.items));
+        std::ranges::copy(warnings_of(entry, Medium::page), std::back_inserter(warnings.items));
     if (!warnings.items.empty()) out.emplace_back(std::move(warnings));
     for (const ResultEntry& entry : result.entries)
         if (const auto* picture = as<ResultEntry::Picture>(entry); picture && picture->draw)
-            out.emplace_back(Drawing{picture->draw(), entry.name});
+            out.emplace_back(Drawing{picture->draw(screen_style), entry.name});
     for (const ResultEntry& entry : result.entries)
-        if (is_line(entry)) {
-            values.rows.push_back({entry.name, shown(entry)});
-            values.warnings.push_back(entry.severity == Severity::fail);
-        }
+        if (is_line(entry, Medium::page) && !section_of_texts(entry))
+            for (std::string& line : lines_of(entry)) {
+                values.rows.push_back({entry.name, std::move(line)});
+                values.warnings.push_back(entry.severity == Severity::fail);
+            }
     if (!values.rows.empty()) out.emplace_back(std::move(values));
+    const auto head = [&](const std::string& text) {
+        if (text != title) out.emplace_back(Heading{text, false, depth});
+    };
     for (const ResultEntry& entry : result.entries) {
-        if (!is_printed(entry) || is_missing(entry)) continue;
-        if (const auto* rows = as<ResultEntry::Rows>(entry)) {
+        if (!is_printed(entry, Medium::page) || is_missing(entry)) continue;
+        if (const auto* texts = section_of_texts(entry)) {
+            head(entry.name);
+            out.emplace_back(ReportList{texts->texts});
+        } else if (const auto* rows = as<ResultEntry::Rows>(entry)) {
             Cells cells = cells_of(*rows);
-            out.emplace_back(Heading{entry.name});
+            head(entry.name);
             out.emplace_back(ReportTable{std::move(cells.head), std::move(cells.rows), {}, std::move(cells.warnings)});
         } else if (const auto* children = as<ResultEntry::Children>(entry)) {
             for (const Result& one : children->results) {
-                out.emplace_back(Heading{one.title.empty() ? entry.name : one.title});
-                add_blocks(out, one);
+                head(one.title.empty() ? entry.name : one.title);
+                add_blocks(out, one, depth + 1, {});
             }
         }
     }
@@ -221,17 +252,34 @@ std::string csv_cell(const std::string& text) {
     return out + "\"";
 }
 
-void add_csv(std::string& out, const Json& json, const std::string& path) {
-    const auto below = [&](const std::string& key) { return path.empty() ? key : path + "." + key; };
-    if (json.is_object())
-        for (const auto& [key, value] : json.items()) add_csv(out, value, below(key));
-    else if (json.is_array())
-        for (std::size_t n = 0; n < json.size(); ++n) add_csv(out, json[n], below(std::to_string(n)));
-    else
-        out += fmt::format("{},{}\n", csv_cell(path),
-                           json.is_null()     ? std::string()
-                           : json.is_string() ? csv_cell(json.as_text())
-                                              : json.dump());
+std::string scalar_csv(const Json& json) {
+    return json.is_null()           ? std::string()
+           : json.is_string()       ? csv_cell(json.as_text())
+           : json.is_number_float() ? fmt::format("{}", json.get<double>())
+                                    : json.dump();
+}
+
+void add_csv(std::string& out, const Result& result, const std::string& above) {
+    for (const ResultEntry& entry : result.entries) {
+        if (entry.key.empty() || (entry.is_omitted && is_missing(entry))) continue;
+        const std::string path = above + entry.key;
+        const auto each = [&](const std::vector<Result>& all) {
+            for (std::size_t n = 0; n < all.size(); ++n) add_csv(out, all[n], fmt::format("{}.{}.", path, n));
+        };
+        if (const auto* rows = as<ResultEntry::Rows>(entry)) each(rows->rows);
+        else if (const auto* children = as<ResultEntry::Children>(entry); children && children->is_list)
+            each(children->results);
+        else if (children && !children->results.empty()) add_csv(out, children->results.front(), path + ".");
+        else {
+            const Json value = value_json(entry);
+            const std::string unit = csv_cell(std::string(unit_of_value(entry)));
+            if (value.is_array())
+                for (std::size_t n = 0; n < value.size(); ++n)
+                    out +=
+                        fmt::format("{},{},{}\n", csv_cell(fmt::format("{}.{}", path, n)), scalar_csv(value[n]), unit);
+            else out += fmt::format("{},{},{}\n", csv_cell(path), scalar_csv(value), unit);
+        }
+    }
 }
 
 }  // namespace
@@ -257,7 +305,7 @@ Json output_json(const Result& result) {
 
 std::vector<ReportBlock> blocks_of(const Result& result) {
     std::vector<ReportBlock> out;
-    add_blocks(out, result);
+    add_blocks(out, result, 1, title_of(result));
     return out;
 }
 
@@ -272,8 +320,19 @@ std::string title_of(const Result& result) {
 std::string html_of(const Result& result) { return html::page(title_of(result), html_of(blocks_of(result), "r")); }
 
 std::string csv_of(const Result& result) {
-    std::string out = "value_of,value\n";
-    add_csv(out, json_of(result), "");
+    std::string out = "path,value,unit\n";
+    add_csv(out, result, "");
+    return out;
+}
+
+std::string csv_table(const std::vector<std::string>& columns, const std::vector<Json>& rows) {
+    std::string out = fmt::format("{}\n", fmt::join(columns, ","));
+    for (const Json& row : rows)
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            const Json* cell = row.find(columns[c]);
+            out += (c > 0 ? "," : "") + (cell ? scalar_csv(*cell) : std::string());
+            if (c + 1 == columns.size()) out += '\n';
+        }
     return out;
 }
 
@@ -286,12 +345,12 @@ Json schema_or_null(Json schema) {
     return schema;
 }
 
-Json schema_of_output(std::string_view title, const Json& schema) {
-    Json all{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", std::string(title)}};
-    all.update(schema);
-    all["properties"]["version"] = {{"const", result_version}};
-    all["required"].push_back("version");
-    return all;
+Json schema_of_output(std::vector<Json> kinds) {
+    for (Json& kind : kinds) {
+        kind["properties"]["version"] = {{"const", result_version}};
+        kind["required"].push_back("version");
+    }
+    return kinds.size() == 1 ? kinds.front() : Json{{"anyOf", Json(kinds)}};
 }
 
 }  // namespace tactus::report

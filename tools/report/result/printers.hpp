@@ -35,7 +35,10 @@ std::string html_of(const Result& result);
 /// CSV with the columns path, value and unit, a row for each value: "channels.0.orders.2.rms,0.0123,m/s^2".
 std::string csv_of(const Result& result);
 
-/// The JSON Schema of an output, with its title and the draft.
-file::Json schema_of_output(std::string_view title, const file::Json& schema);
+/// CSV with these columns, a line for each row; cells of members that a row does not have are empty.
+std::string csv_table(const std::vector<std::string>& columns, const std::vector<file::Json>& rows);
+
+/// The JSON Schema of the output of a verb, which has one of these kinds of results.
+file::Json schema_of_output(std::vector<file::Json> kinds);
 
 }  // namespace tactus::report

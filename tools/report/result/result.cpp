@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/result/result.hpp"
 
+#include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
+#include "dsp/core/units.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,8 +24,21 @@ struct Overload : Each... {
 template <class... Each>
 Overload(Each...) -> Overload<Each...>;
 
-std::string digits_of(double value, const NumberFormat& format) {
-    if (!std::isfinite(value)) return dash;
+/// Shown number per value.
+double scale_of(const std::string& unit, const std::string& of) {
+    if (of.empty() || of == unit) return 1.0;
+    if (unit == "%" && of == "1") return 100.0;
+    const Unit to = parse_unit(unit), from = parse_unit(of);
+    if (to.dimension != from.dimension) throw Error(fmt::format("{} is no unit for a value in {}", unit, of));
+    return from.factor / to.factor;
+}
+
+NumberFormat format_of(NumberFormat::Notation notation, int digits, std::string unit, std::string of) {
+    const double scale = scale_of(unit, of);
+    return {notation, digits, std::move(unit), std::move(of), scale};
+}
+
+std::string unsigned_digits(double value, const NumberFormat& format) {
     const double scaled = value * format.scale;
     if (format.notation == NumberFormat::Notation::fixed) {
         std::string text = fmt::format("{:.{}f}", scaled, format.digits);
@@ -32,6 +47,13 @@ std::string digits_of(double value, const NumberFormat& format) {
         return text;
     }
     return plain(scaled, format.digits);
+}
+
+std::string digits_of(double value, const NumberFormat& format) {
+    if (!std::isfinite(value)) return dash;
+    std::string text = unsigned_digits(value, format);
+    const bool is_zero = text.find_first_not_of("0.") == std::string::npos;
+    return format.is_signed && !is_zero && text.front() != '-' ? "+" + text : text;
 }
 
 std::string with_unit(std::string digits, const std::string& unit) {
@@ -52,9 +74,36 @@ std::string shown_number(const Number& number, const NumberFormat& format) {
 
 }  // namespace
 
+NumberFormat NumberFormat::with_sign() const {
+    NumberFormat format = *this;
+    format.is_signed = true;
+    return format;
+}
+
+NumberFormat fixed(int digits, std::string unit, std::string of) {
+    return format_of(NumberFormat::Notation::fixed, digits, std::move(unit), std::move(of));
+}
+NumberFormat significant(int digits, std::string unit, std::string of) {
+    return format_of(NumberFormat::Notation::significant, digits, std::move(unit), std::move(of));
+}
+NumberFormat prefixed(int digits, std::string unit) {
+    return {NumberFormat::Notation::prefixed, digits, std::move(unit)};
+}
+
 const ResultEntry* Result::find(std::string_view key) const {
     const auto found = std::ranges::find(entries, key, &ResultEntry::key);
     return found == entries.end() ? nullptr : &*found;
+}
+
+void settle_pictures(Result& result, bool keeps_pictures, const FigureStyle& style) {
+    for (ResultEntry& entry : result.entries) {
+        if (auto* picture = std::get_if<ResultEntry::Picture>(&entry.value); picture && picture->draw) {
+            if (!keeps_pictures) picture->draw = nullptr;
+            else picture->draw = [drawn = picture->draw(style)](const FigureStyle&) { return drawn; };
+        } else if (auto* children = std::get_if<ResultEntry::Children>(&entry.value)) {
+            for (Result& one : children->results) settle_pictures(one, keeps_pictures, style);
+        }
+    }
 }
 
 std::string shown(const ResultEntry& entry) {
@@ -76,6 +125,16 @@ std::string shown(const ResultEntry& entry) {
                  },
                  [](const auto&) { return std::string(); }},
         entry.value);
+}
+
+std::string_view unit_of_value(const ResultEntry& entry) {
+    const auto of_format = [](const NumberFormat& format) -> std::string_view {
+        return format.of.empty() ? format.unit : format.of == "1" ? std::string_view() : format.of;
+    };
+    if (const auto* q = std::get_if<ResultEntry::Quantity>(&entry.value))
+        return q->number.unit.empty() ? of_format(q->format) : q->number.unit;
+    if (const auto* r = std::get_if<ResultEntry::Range>(&entry.value)) return of_format(r->format);
+    return {};
 }
 
 bool is_missing(const ResultEntry& entry) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "devices/display/figure.hpp"
+#include "tools/report/figures/figure_style.hpp"
 
 #include <functional>
 #include <optional>
@@ -14,29 +15,31 @@
 
 namespace tactus::report {
 
-/// How a number is shown. In JSON it has all digits, in the unit of its key (`delay_s`, `gain_db`).
+/// How a number is shown. JSON and CSV have all digits, in the unit of the value, which the key names (`delay_s`, `gain_db`).
 struct NumberFormat {
     enum class Notation {
-        fixed,        ///< `digits` decimals
+        fixed,  ///< `digits` decimals
         significant,  ///< `digits` significant digits, without trailing zeros
-        prefixed,     ///< the same, with a prefix of the unit: "350 µm"
+        prefixed,  ///< the same, with a prefix of the unit: "350 µm"
     };
     Notation notation = Notation::significant;
     int digits = 4;
-    std::string unit{};   ///< shown after the number; empty: none, or that of the value
-    double scale = 1.0;   ///< shown number per value: 1e3 for ms of a value in s
+    std::string unit{};  ///< shown after the number; empty: none, or that of the value
+    std::string of{};  ///< unit of the value; empty: the shown one
+    double scale = 1.0;  ///< shown number per value
+    bool is_signed = false;  ///< "+1.2"
+
+    /// Positive numbers have a sign: gains and differences.
+    NumberFormat with_sign() const;
 };
 
-/// 1e3 · value with `digits` decimals and "ms", for example.
-inline NumberFormat fixed(int digits, std::string unit = "", double scale = 1.0) {
-    return {NumberFormat::Notation::fixed, digits, std::move(unit), scale};
-}
-inline NumberFormat significant(int digits, std::string unit = "", double scale = 1.0) {
-    return {NumberFormat::Notation::significant, digits, std::move(unit), scale};
-}
-inline NumberFormat prefixed(int digits, std::string unit = "") {
-    return {NumberFormat::Notation::prefixed, digits, std::move(unit), 1.0};
-}
+/// `digits` decimals. `unit` is shown; `of` is the unit of the value where it is another one: fixed(1, "ms", "s"),
+/// fixed(0, "%", "1"). Throws Error for units of different dimensions.
+NumberFormat fixed(int digits, std::string unit = "", std::string of = "");
+/// `digits` significant digits.
+NumberFormat significant(int digits, std::string unit = "", std::string of = "");
+/// `digits` significant digits, and a prefix of the unit.
+NumberFormat prefixed(int digits, std::string unit = "");
 
 /// A quantity, or none: JSON then has null and a table a dash.
 struct Number {
@@ -55,6 +58,13 @@ enum class Severity {
     pass,
     fail,
     warning,
+};
+
+/// The printed formats in which a value appears.
+enum class Where {
+    everywhere,
+    pages,  ///< HTML and PDF
+    nowhere,
 };
 
 struct Result;
@@ -80,6 +90,7 @@ struct ResultEntry {
     };
     struct Texts {
         std::vector<std::string> texts;
+        bool is_apart = false;  ///< a line for each; otherwise one line with commas
     };
     /// A view of values that live as long as what was analysed; JSON contains all of them, no printed format does.
     struct Series {
@@ -88,7 +99,7 @@ struct ResultEntry {
     };
     /// Drawn when a format shows it.
     struct Picture {
-        std::function<display::Figure()> draw;
+        std::function<display::Figure(const FigureStyle&)> draw;
     };
     struct Rows {
         std::vector<Result> rows;
@@ -104,6 +115,7 @@ struct ResultEntry {
     bool is_omitted = false;  ///< in JSON a value that is missing is left out, not null
     Severity severity = Severity::none;
     std::variant<Quantity, Range, Integer, Text, Flag, Texts, Series, Picture, Rows, Children> value;
+    Where where = Where::everywhere;
 };
 
 struct Result {
@@ -113,9 +125,15 @@ struct Result {
     const ResultEntry* find(std::string_view key) const;
 };
 
+/// Draws the pictures now in this style, or drops them: what was analysed need not live any longer, if it has no series.
+void settle_pictures(Result& result, bool keeps_pictures, const FigureStyle& style = screen_style);
+
 /// The digits of a value, the same in all printed formats: "3.1 ms ± 0.1 ms", "pass", "–" without a value. Empty for rows,
 /// children, series and pictures.
 std::string shown(const ResultEntry& entry);
+
+/// Unit of the value in JSON and CSV; empty: none, or not a number.
+std::string_view unit_of_value(const ResultEntry& entry);
 
 /// Whether the value is missing: no number, no text, no rows.
 bool is_missing(const ResultEntry& entry);

@@ -153,19 +153,14 @@ const Fields<FileOrders>& orders_fields() {
             .number("sample_rate_hz", "sample rate", prefixed(6, "Hz"),
                     [](const FileOrders& f) { return f.found->sample_rate; })
             .number("duration_s", "duration", fixed(3, "s"), [](const FileOrders& f) { return f.found->duration; })
-            .child("stretch", "", stretch_fields(),
-                   [](const FileOrders& f) -> const sound::ReadStretch& { return f.found->stretch; })
-            .text("", "of the record",
-                  [](const FileOrders& f) {
-                      return f.found->stretch.is_whole() ? std::string() : f.found->stretch.text();
-                  })
             .text(
                 "", "levels",
                 [](const FileOrders& f) { return "dB rms re " + analysis::level_reference(f.found->calibration).text; })
-            .texts("", "read as",
-                   [](const FileOrders& f) {
-                       return analysis::understood(f.found->calibration, f.found->log, f.found->sample_rate);
-                   })
+            .part(record_fields(),
+                  [](const FileOrders& f) {
+                      return ReadRecord{f.found->stretch, f.found->calibration, f.found->log, f.found->sample_rate};
+                  })
+            .omitted()
             .text("source", "rate from", [](const FileOrders& f) { return f.found->source; })
             .child("rate_hz", "", rate_fields(),
                    [](const FileOrders& f) -> const analysis::RateRange& { return f.found->rate; })
@@ -180,23 +175,14 @@ const Fields<FileOrders>& orders_fields() {
                 [](const FileOrders& f) {
                     return !f.found->channels.empty() && f.found->channels.front().waterfall.has_value();
                 },
-                [](const FileOrders& f) { return draw_waterfall(*f.found, f.file); })
+                [](const FileOrders& f, const FigureStyle& style) { return draw_waterfall(*f.found, f.file, style); })
             .warnings("", unmeasured)
-            .children("channels", "channel", channel_fields(),
-                      [](const FileOrders& f) {
-                          std::vector<Channel> channels;
-                          for (const analysis::OrdersOfChannel& one : f.found->channels)
-                              channels.push_back({&one, &f.found->calibration});
-                          return channels;
-                      })
-            .child("calibration", "", calibration_fields(),
-                   [](const FileOrders& f) -> const sound::Calibration& { return f.found->calibration; })
-            .child("log", "", log_fields(),
-                   [](const FileOrders& f) {
-                       return f.found->log ? std::optional(ReadLog{&*f.found->log, f.found->sample_rate})
-                                           : std::nullopt;
-                   })
-            .omitted();
+            .children("channels", "channel", channel_fields(), [](const FileOrders& f) {
+                std::vector<Channel> channels;
+                for (const analysis::OrdersOfChannel& one : f.found->channels)
+                    channels.push_back({&one, &f.found->calibration});
+                return channels;
+            });
     return all;
 }
 

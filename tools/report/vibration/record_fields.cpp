@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/vibration/record_fields.hpp"
 
+#include "tools/analysis/vibration/record.hpp"
+
 #include <optional>
 #include <string>
 
@@ -27,8 +29,6 @@ const Fields<table::LogForm>& form_fields() {
             .flag("time_unit_stated", "", [](const LogForm& f) { return f.is_time_unit_stated; });
     return all;
 }
-
-}  // namespace
 
 const Fields<sound::Calibration>& calibration_fields() {
     using sound::Calibration;
@@ -70,6 +70,8 @@ const Fields<ReadLog>& log_fields() {
     return all;
 }
 
+}  // namespace
+
 const Fields<sound::ReadStretch>& stretch_fields() {
     using sound::ReadStretch;
     static const Fields<ReadStretch> all =
@@ -77,6 +79,21 @@ const Fields<sound::ReadStretch>& stretch_fields() {
             .number("from_s", "from", significant(6, "s"), [](const ReadStretch& s) { return s.from; })
             .number("to_s", "to", significant(6, "s"), [](const ReadStretch& s) { return s.to; })
             .number("of_s", "length of the record", significant(6, "s"), [](const ReadStretch& s) { return s.of; });
+    return all;
+}
+
+const Fields<ReadRecord>& record_fields() {
+    static const Fields<ReadRecord> all =
+        Fields<ReadRecord>("record that was read")
+            .child("stretch", "", stretch_fields(),
+                   [](const ReadRecord& r) -> const sound::ReadStretch& { return r.stretch; })
+            .text("", "of the record",
+                  [](const ReadRecord& r) { return r.stretch.is_whole() ? std::string() : r.stretch.text(); })
+            .notes("", "record", [](const ReadRecord& r) { return analysis::understood(r.calibration, r.log, r.rate); })
+            .child("calibration", "", calibration_fields(),
+                   [](const ReadRecord& r) -> const sound::Calibration& { return r.calibration; })
+            .child("log", "", log_fields(),
+                   [](const ReadRecord& r) { return r.log ? std::optional(ReadLog{&*r.log, r.rate}) : std::nullopt; });
     return all;
 }
 
