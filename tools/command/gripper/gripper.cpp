@@ -5,12 +5,12 @@
 #include "tools/analysis/gripper/rig_study.hpp"
 #include "tools/analysis/workers.hpp"
 #include "tools/command/batch.hpp"
-#include "tools/command/figure_options.hpp"
-#include "tools/command/gripper/rig_text.hpp"
 #include "tools/command/patch_options.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/report/figures/rig_figures.hpp"
-#include "tools/report/figures/rig_page.hpp"
+#include "tools/report/gripper/rig_result.hpp"
+#include "tools/report/result/printers.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/terminal.hpp"
 
@@ -28,7 +28,7 @@ struct RigChoice {
     int threads = 0;           // 0: one per core
     FigureChoice figure;
     bool keep_series = false;  // write the samples to series.csv
-    bool json = false;
+    bool json = false, quiet = false;
 };
 
 analysis::RigReport simulate(const RigChoice& choice, const analysis::RigMatrix& matrix) {
@@ -69,14 +69,16 @@ int judge(const RigChoice& choice) {
     analysis::RigReport report;
     if (is_record) report = recorded(choice);
     else report = simulate(choice, matrix);
-    const std::string json = rig_json(report);
-    file::write_whole_file(choice.out / "rig.json", json);
-    file::write_whole_file(choice.out / "rig.csv", rig_csv(report));
-    file::write_whole_file(choice.out / "report.html", report::rig_html(report));
+    const report::Result result = report::rig_fields().of(report);
+    file::write_whole_file(choice.out / "rig.csv", report::rig_table(report));
     save_figure(report::draw_rig_errors(report), choice.out / "errors.png", choice.figure);
     if (!report.crossover.empty())
         save_figure(report::draw_rig_crossover(report), choice.out / "crossover.png", choice.figure);
-    fmt::print("{}", choice.json ? json : rig_text(report));
+    ResultChoice printed;
+    printed.out = {choice.out / "rig.json", choice.out / "report.html", choice.out / "report.pdf"};
+    printed.quiet = choice.quiet;
+    printed.json = choice.json;
+    write_result(result, printed);
     return done;
 }
 
@@ -85,13 +87,15 @@ Action declare_gripper(VerbOptions& verb) {
     add_patch_options(verb, choice->patch);
     verb.find("patch").about("patch with a gripper on a test rig, such as gripper-wqsm, or a CSV record of a real one");
     verb.add("--matrix", choice->matrix, "TOML file with the test matrix (default: the matrix of Olsson 2015)");
-    verb.add("-o,--out", choice->out, "folder for report.html, rig.json and rig.csv").required();
+    verb.add("-o,--out", choice->out, "folder for report.html, report.pdf, rig.json, rig.csv and the figures")
+        .required();
     verb.add("--jobs", choice->threads, "cells at a time, 0: one per core").range(0, 64);
     verb.old("--threads", "--jobs");
     verb.flag("--series", choice->keep_series,
               "also write all samples to series.csv, a record that this verb can read");
     add_figure_options(verb, choice->figure);
     verb.flag("--json", choice->json, "print the result as JSON");
+    verb.flag("--quiet", choice->quiet, "print no result, only errors");
     return [choice] { return judge(*choice); };
 }
 
@@ -102,7 +106,8 @@ Verb gripper_verb() {
             .about =
                 "measure how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
             .add = declare_gripper,
-            .old_name = "rig"};
+            .old_name = "rig",
+            .schema = [] { return report::schema_of_output({report::rig_fields().schema()}); }};
 }
 
 }  // namespace tactus::command
