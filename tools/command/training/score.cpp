@@ -2,12 +2,10 @@
 // tactus score: what an attempt at a task was like, in numbers and on a page.
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/command/batch.hpp"
-#include "tools/command/options.hpp"
-#include "tools/command/training/score_text.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/training_page.hpp"
-#include "tools/terminal.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/report/training/score_result.hpp"
 
 #include <fmt/format.h>
 
@@ -21,8 +19,8 @@ namespace fs = std::filesystem;
 
 struct ScoreChoice {
     std::vector<fs::path> runs, reference;
-    fs::path task, report, csv;
-    bool json = false;
+    fs::path task, csv;
+    ResultChoice result;
 };
 
 std::vector<analysis::ScoredRun> scored(const std::vector<fs::path>& folders, const fs::path& task) {
@@ -34,6 +32,7 @@ std::vector<analysis::ScoredRun> scored(const std::vector<fs::path>& folders, co
 }
 
 int score(const ScoreChoice& choice) {
+    check_result_files(choice.result);
     const std::vector<analysis::ScoredRun> runs = scored(choice.runs, choice.task);
     const std::vector<analysis::ScoredRun> others = scored(choice.reference, choice.task);
     for (const analysis::ScoredRun& other : others)
@@ -42,9 +41,10 @@ int score(const ScoreChoice& choice) {
                                     runs.back().task.title));
     const std::vector<analysis::ReferenceMeasure> group =
         others.empty() ? std::vector<analysis::ReferenceMeasure>{} : analysis::reference_of(others);
-    if (!choice.csv.empty()) file::write_whole_file(choice.csv, score_csv(runs));
-    if (!choice.report.empty()) file::write_whole_file(choice.report, report::training_page(runs, group));
-    say(stdout, choice.json ? score_json(runs, group) : score_text(runs, group));
+    if (!choice.csv.empty()) file::write_whole_file(choice.csv, report::score_table(runs));
+    report::ScoredRuns found{runs, group};
+    if (choice.result.shows_figures()) found.pictures = report::pictures_of(runs.back());
+    write_result(report::score_result(found), choice.result);
     return done;
 }
 
@@ -57,17 +57,20 @@ Action declare_score(VerbOptions& verb) {
     verb.add("--reference", choice->reference, "the same of a reference group, for percentiles; may be given again")
         .one_each();
     verb.add("--task", choice->task, "score by this task file in place of the one that the run names");
-    verb.add("--report", choice->report, "write a page with pictures to this .html file");
+    add_result_options(verb, choice->result, ResultFigure::some);
+    verb.find("--json").about("as JSON: an object for one run, rows for several");
+    verb.old("--report", "--out");
     verb.add("--csv", choice->csv, "write a table with a line per run to this file");
-    verb.flag("--json", choice->json, "as JSON: an object for one run, rows for several");
     return [choice] { return score(*choice); };
 }
 
 }  // namespace
 
 Verb score_verb() {
-    return {"score", "score attempts at a training task: plane, volumes, structures, force, strokes; not validated",
-            declare_score};
+    return {.name = "score",
+            .about = "score attempts at a training task: plane, volumes, structures, force, strokes; not validated",
+            .add = declare_score,
+            .schema = [] { return report::schema_of_output(report::score_schemas()); }};
 }
 
 }  // namespace tactus::command

@@ -7,8 +7,9 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/patch_options.hpp"
-#include "tools/command/training/score_text.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/report/training/score_result.hpp"
 #include "tools/run/device_scale.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/run/rendered_run.hpp"
@@ -102,8 +103,9 @@ AttemptEnd make_attempt(const window::ViewedRunChoice& choice, bool offline, com
 void keep_score(const fs::path& attempt) {
     try {
         const analysis::ScoredRun run = analysis::score_run(attempt);
-        file::write_whole_file(attempt / "score.json", score_json(run));
-        say(stdout, score_text(std::span(&run, 1), {}));
+        const report::Result score = report::score_result({{&run, 1}, {}});
+        file::write_whole_file(attempt / "score.json", report::output_json(score).dump(2) + "\n");
+        say(stdout, report::text_of(score));
     } catch (const Error& error) {
         say(stderr, fmt::format("tactus: no score: {}\n", error.what()));
     }
