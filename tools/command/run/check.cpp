@@ -2,15 +2,12 @@
 #include "assets/file/json.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/analyse/stiffness.hpp"
-#include "tools/analysis/passivity/z_width.hpp"
-#include "tools/analysis/patch_stiffness.hpp"
-#include "tools/command/figure_options.hpp"
+#include "tools/analysis/patch_check.hpp"
 #include "tools/command/patch_options.hpp"
-#include "tools/command/run/check_rows.hpp"
-#include "tools/command/run/check_schedule.hpp"
-#include "tools/command/run/check_text.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/report/figures/z_width_figure.hpp"
+#include "tools/report/patch/check_result.hpp"
+#include "tools/report/result/printers.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/terminal.hpp"
 
@@ -19,21 +16,20 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace tactus::command {
 
-using file::Json;
-
 namespace {
 
 struct CheckChoice {
     run::PatchChoice patch;
-    bool json = false, z_width = false;
-    std::filesystem::path z_width_figure;
-    FigureChoice figure;
+    bool z_width = false;
+    ResultChoice result;
 };
 
 /// The figures of a device by its name in the patch; "" is the only one.
@@ -72,76 +68,94 @@ compile::Schedule plan_again(const run::PatchChoice& patch, compile::AssetCache&
     return std::move(*plan);
 }
 
+/// Adds what only `prepare` can find: devices, file names, sizes, loops.
+void check_prepared(const CheckChoice& choice, compile::Schedule plan, compile::AssetCache& assets,
+                    analysis::PatchCheck& found) {
+    run::EngineOptions options;
+    options.only_checked = true;
+    const run::Engine engine(std::move(plan), options);
+    const std::vector<analyse::ForceLoop> loops = analyse::force_loops(engine.plan(), devices_of(engine.host()));
+    found.paths = analysis::checked_paths(engine.plan(), loops);
+    found.contact = analysis::contact_laws(engine);
+    found.classes = analysis::class_verdicts(loops);
+    found.loops = analysis::checked_loops(engine.nodes());
+    found.warnings = engine.host().notices;
+    const std::vector<double> costs = analysis::measured_costs([&] { return plan_again(choice.patch, assets); });
+    found.schedule = analysis::checked_schedule(engine.plan(), costs);
+    for (std::string& warning : analysis::schedule_warnings(engine.plan(), costs))
+        found.warnings.push_back(std::move(warning));
+    for (const std::string& node : analyse::unstated_laws(engine.plan()))
+        found.warnings.push_back(fmt::format(
+            "'{}' shapes a force by a law that check cannot judge; keep its slope below what the path may feel", node));
+    found.sound = analysis::checked_sound(engine.plan());
+    found.outputs = analysis::checked_outputs(engine.nodes(), loops, found.warnings);
+    if (choice.z_width) found.z_width = z_width_of(engine.host());
+    found.is_prepared = true;
+}
+
 int check(const CheckChoice& choice) {
+    ResultChoice result = choice.result;
+    if (!choice.z_width) result.has_figure = ResultFigure::none;
+    check_result_files(result);
     patch::Problems problems;
     compile::AssetCache assets;
-    std::optional<compile::Schedule> plan;
-    Json json;
+    analysis::PatchCheck found;
     try {
-        plan = run::read_plan(choice.patch, problems);
+        std::optional<compile::Schedule> plan = run::read_plan(choice.patch, problems);
         if (plan) assets.load(*plan, problems);
-        json = check_json(plan, problems);
-        // Finds errors that only `prepare` can find: devices, file names, sizes.
-        if (problems.empty()) {
-            run::EngineOptions options;
-            options.only_checked = true;
-            const run::Engine engine(std::move(*plan), options);
-            const auto loops = analyse::force_loops(engine.plan(), devices_of(engine.host()));
-            json["paths"] = paths_json(engine.plan(), loops);
-            json["contact"] = contact_json(analysis::contact_laws(engine));
-            json["device_classes"] = classes_json(analysis::class_verdicts(loops));
-            json["admittance_loops"] = loops_json(engine.nodes());
-            json["warnings"] = engine.host().notices;
-            const std::vector<double> costs = measured_costs([&] { return plan_again(choice.patch, assets); });
-            json["schedule"] = schedule_json(engine.plan(), costs);
-            for (std::string& warning : schedule_warnings(engine.plan(), costs))
-                json["warnings"].push_back(std::move(warning));
-            for (const std::string& node : analyse::unstated_laws(engine.plan()))
-                json["warnings"].push_back(fmt::format(
-                    "'{}' shapes a force by a law that check cannot judge; keep its slope below what the path may feel",
-                    node));
-            if (const Json sound = sound_json(engine.plan()); !sound.is_null()) json["sound"] = sound;
-            json["outputs"] = outputs_json(engine.nodes(), loops, json["warnings"]);
-            if (choice.z_width || !choice.z_width_figure.empty()) {
-                const std::vector<analysis::ZWidthCurve> curves = z_width_of(engine.host());
-                json["z_width"] = z_width_json(curves);
-                if (!choice.z_width_figure.empty())
-                    save_figure(report::draw_z_width(curves), choice.z_width_figure, choice.figure);
-            }
+        if (plan) {
+            found.groups = analysis::checked_groups(*plan);
+            found.paths = analysis::checked_paths(*plan, {});
+            found.processes = analysis::device_processes(*plan);
         }
+        if (problems.empty()) check_prepared(choice, std::move(*plan), assets, found);
     } catch (const Error& error) {
         problems.list.push_back(error);
-        const Json before = std::exchange(json, check_json(std::nullopt, problems));
-        for (const char* key : {"groups", "processes"})
-            if (before.contains(key)) json[key] = before[key];
+        // Groups and processes are those of the plan; the rest is not known to the end.
+        analysis::PatchCheck known;
+        known.groups = std::move(found.groups);
+        known.processes = std::move(found.processes);
+        found = std::move(known);
     }
-    if (choice.json) fmt::print("{}\n", json.dump(2));
-    else {
+    found.errors = problems.list;
+    if (!result.json)
         for (const std::string& line : run::problem_lines(problems)) fmt::print(stderr, "{}\n", line);
-        print_check(json);
-    }
+    write_result(report::check_fields().of(found), result);
     if (!problems.empty()) return bad_input;
-    return is_stable(json) ? done : answer_is_no;
+    return found.is_stable() ? done : answer_is_no;
+}
+
+/// Old spelling: --z-width-figure FILE.
+void figure_was_option(std::vector<std::string>& words) {
+    constexpr std::string_view before = "--z-width-figure";
+    for (std::size_t n = 0; n < words.size(); ++n) {
+        if (!words[n].starts_with(before)) continue;
+        words[n].replace(0, before.size(), "--out");
+        if (std::ranges::find(words, "--z-width") == words.end())
+            words.insert(words.begin() + static_cast<std::ptrdiff_t>(n), "--z-width");
+        return;
+    }
 }
 
 Action declare_check(VerbOptions& verb) {
     const auto choice = std::make_shared<CheckChoice>();
     add_patch_options(verb, choice->patch);
-    verb.flag("--json", choice->json, "as JSON");
     verb.flag(
         "--z-width", choice->z_width,
         "also which walls, by stiffness and damping, the devices of the patch and simulated ones bear, per rate and "
         "delay");
-    verb.add("--z-width-figure", choice->z_width_figure, "draw that to this .svg, .png or .pdf");
-    add_figure_options(verb, choice->figure);
+    add_result_options(verb, choice->result, ResultFigure::styled);
+    verb.old(figure_was_option);
     return [choice] { return check(*choice); };
 }
 
 }  // namespace
 
 Verb check_verb() {
-    return {"check", "find errors; list groups, latencies and stiffness limits; exit code 1: too stiff or unstable",
-            declare_check};
+    return {.name = "check",
+            .about = "find errors; list groups, latencies and stiffness limits; exit code 1: too stiff or unstable",
+            .add = declare_check,
+            .schema = [] { return report::schema_of_output({report::check_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

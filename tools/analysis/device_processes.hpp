@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus::command {
+namespace tactus::analysis {
 
 /// A device with a process of its own.
 struct DeviceProcess {
@@ -19,4 +19,4 @@ struct DeviceProcess {
 /// Those that nodes of the plan use. Throws Error on options that cannot be read.
 std::vector<DeviceProcess> device_processes(const compile::Schedule& plan);
 
-}  // namespace tactus::command
+}  // namespace tactus::analysis

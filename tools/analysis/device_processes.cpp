@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/command/run/check_process.hpp"
+#include "tools/analysis/device_processes.hpp"
 
 #include "devices/hosted/placement.hpp"
 #include "graph/node/options.hpp"
@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-namespace tactus::command {
+namespace tactus::analysis {
 
 namespace {
 
@@ -60,4 +60,4 @@ std::vector<DeviceProcess> device_processes(const compile::Schedule& plan) {
     return all;
 }
 
-}  // namespace tactus::command
+}  // namespace tactus::analysis
