@@ -8,20 +8,25 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
+#include <vector>
 
 namespace tactus::report {
 
 namespace {
 
-constexpr double box_width = 150, box_height = 46, column_gap = 90, row_gap = 26, lane_label = 190, lane_padding = 18,
+constexpr double box_width = 150, min_height = 46, column_gap = 90, row_gap = 26, lane_label = 190, lane_padding = 18,
                  margin = 16, title_height = 44;
+constexpr double wire_pitch = 12;  // of the ends of wires at a box: the height of a label
 
 constexpr std::size_t max_shown = 40;  ///< characters of a name
 
+/// A box, and the wires that begin and end there, from the top.
 struct Place {
-    double x = 0, y = 0;
-    int column = 0, row = 0;
+    double x = 0, y = 0, height = min_height;
+    int column = 0;
+    std::vector<const compile::ScheduleWire*> out, in;
 };
 
 constexpr std::array<std::pair<std::string_view, display::Colour>, 7> colours{{{"pose", {0x25, 0x63, 0xEB}},
@@ -49,6 +54,7 @@ class PatchDrawing {
 public:
     explicit PatchDrawing(const compile::Schedule& plan) : plan_(plan), places_(plan.nodes.size()) {
         find_columns();
+        find_wires();
         place();
     }
 
@@ -83,21 +89,40 @@ private:
                     place_of(to).column = std::max(place_of(to).column, place_of(from).column + 1);
     }
 
+    /// Boxes are high enough for the wires of each side, which are in the order of the ports; wires to parameters are the
+    /// lowest.
+    void find_wires() {
+        for (const compile::ScheduleWire& wire : plan_.wires) {
+            if (wire.from_node < 0) continue;
+            place_of(wire.from_node).out.push_back(&wire);
+            place_of(wire.to_node).in.push_back(&wire);
+        }
+        for (Place& p : places_) {
+            std::ranges::stable_sort(p.out, {}, &compile::ScheduleWire::from_output);
+            std::ranges::stable_sort(p.in, {}, [](const compile::ScheduleWire* wire) {
+                return wire->to_input < 0 ? std::numeric_limits<int>::max() : wire->to_input;
+            });
+            p.height =
+                std::max(min_height, wire_pitch * (static_cast<double>(std::max(p.out.size(), p.in.size())) + 1.0));
+        }
+    }
+
     void place() {
         double y = title_height;
         int columns = 1;
         for (const compile::ScheduleGroup& group : plan_.groups) {
-            std::map<int, int> rows;
-            int deepest = 1;
+            std::map<int, double> below;  // of the boxes in each column
+            double deepest = y + lane_padding + min_height;
             for (const int index : group.order) {
                 Place& p = place_of(index);
-                p.row = rows[p.column]++;
+                double& next = below.try_emplace(p.column, y + lane_padding).first->second;
                 p.x = margin + lane_label + p.column * (box_width + column_gap);
-                p.y = y + lane_padding + p.row * (box_height + row_gap);
-                deepest = std::max(deepest, p.row + 1);
+                p.y = next;
+                next += p.height + row_gap;
+                deepest = std::max(deepest, p.y + p.height);
                 columns = std::max(columns, p.column + 1);
             }
-            lanes_.push_back({y, 2 * lane_padding + deepest * (box_height + row_gap) - row_gap});
+            lanes_.push_back({y, deepest + lane_padding - y});
             y += lanes_.back().second + 34;
         }
         width_ = std::max(760.0, 2 * margin + lane_label + columns * (box_width + column_gap));
@@ -122,12 +147,12 @@ private:
     void draw_nodes(display::Figure& to) const {
         for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
             const Place& p = places_[i];
-            const double middle = p.x + box_width / 2;
+            const double middle = p.x + box_width / 2, centre = p.y + p.height / 2;
             const std::string name = shown(plan_.nodes[i].name);
             to.begin(plan_.nodes[i].name, "");
-            to.rounded(p.x, p.y, box_width, box_height, 6.0, paper, rim, 1.0);
-            to.text({middle, p.y + 20}, name, name_size(name), ink, display::TextAnchor::middle, true);
-            to.text({middle, p.y + 36}, plan_.nodes[i].type->name, 10.0, faint, display::TextAnchor::middle);
+            to.rounded(p.x, p.y, box_width, p.height, 6.0, paper, rim, 1.0);
+            to.text({middle, centre - 3}, name, name_size(name), ink, display::TextAnchor::middle, true);
+            to.text({middle, centre + 13}, plan_.nodes[i].type->name, 10.0, faint, display::TextAnchor::middle);
             to.end();
         }
     }
@@ -142,9 +167,11 @@ private:
         return name.size() <= max_shown ? name : name.substr(0, max_shown - 1) + "…";
     }
 
-    /// The place of a wire among a node's ports, so that wires do not overlap.
-    static double docked(double y, std::size_t port, std::size_t ports) {
-        return y + box_height * (static_cast<double>(port) + 1.0) / (static_cast<double>(ports) + 1.0);
+    /// Where a wire is among those of one side of a box, so that neither wires nor labels overlap.
+    static double docked(const Place& p, const std::vector<const compile::ScheduleWire*>& side,
+                         const compile::ScheduleWire& wire) {
+        const auto at = static_cast<double>(std::ranges::find(side, &wire) - side.begin());
+        return p.y + p.height * (at + 1.0) / (static_cast<double>(side.size()) + 1.0);
     }
 
     const ValueType& type_of(const compile::ScheduleWire& wire) const {
@@ -155,9 +182,7 @@ private:
     }
     display::FigurePoint end_of(const compile::ScheduleWire& wire) const {
         const Place& b = place_of(wire.to_node);
-        return {b.x, wire.to_input < 0
-                         ? b.y + box_height - 4
-                         : docked(b.y, static_cast<std::size_t>(wire.to_input), node(wire.to_node).inputs.size())};
+        return {b.x, docked(b, b.in, wire)};
     }
 
     void draw_wire(display::Figure& to, const compile::ScheduleWire& wire) const {
@@ -166,9 +191,7 @@ private:
         const compile::ScheduleNode& from = node(wire.from_node);
         const std::string& output = from.outputs[static_cast<std::size_t>(wire.from_output)].name;
         const display::Colour colour = colour_of(type_of(wire));
-        const display::FigurePoint begin{a.x + box_width,
-                                         docked(a.y, static_cast<std::size_t>(wire.from_output), from.outputs.size())},
-            end = end_of(wire);
+        const display::FigurePoint begin{a.x + box_width, docked(a, a.out, wire)}, end = end_of(wire);
         const double reach = std::max(40.0, std::abs(end.x - begin.x) * 0.45);
         to.begin(fmt::format("wire-{}", &wire - plan_.wires.data()),
                  fmt::format("{}.{} to {}", from.name, output, node(wire.to_node).name));
