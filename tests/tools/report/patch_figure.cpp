@@ -4,6 +4,11 @@
 #include "devices/display/figure_painter.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/compile_nodes.hpp"
+#include "tools/run/load_plan.hpp"
+
+#include <cmath>
+#include <optional>
+#include <vector>
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
@@ -60,4 +65,26 @@ TEST_CASE("a name too long for its box is set smaller, and cut when that is not 
             ++checked;
         }
     CHECK(checked == 2);
+}
+
+TEST_CASE("labels of wires do not overlap, however many wires end at a node") {
+    for (const char* name : {"saw-guide", "saw-training", "planning-trauma"}) {
+        run::PatchChoice choice;
+        choice.patch = name;
+        patch::Problems problems;
+        const std::optional<compile::Schedule> plan = run::read_plan(choice, problems);
+        REQUIRE(plan);
+        const display::Figure figure = report::draw_patch(*plan);
+        std::vector<const display::Figure::Text*> labels;
+        for (const display::Figure::Item& item : figure.items())
+            if (const auto* one = std::get_if<display::Figure::Text>(&item); one && one->halo) labels.push_back(one);
+        CAPTURE(name);
+        CHECK(labels.size() > 5);
+        for (const auto* a : labels)
+            for (const auto* b : labels) {
+                if (a == b || a->at.x != b->at.x) continue;
+                CAPTURE(a->text, a->at.y, b->text, b->at.y);
+                CHECK(std::abs(a->at.y - b->at.y) >= a->size);
+            }
+    }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Results: one tree in text, JSON, HTML and PDF has the same digits, and outputs follow their schemas.
 #include "tests/support/catch.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/pdf_text.hpp"
 #include "tests/tools/record_folder.hpp"
 #include "tools/report/blocks/pages.hpp"
@@ -12,8 +13,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -23,6 +26,7 @@ using nlohmann::json;
 using report::NumberFormat;
 using report::Result;
 using report::ResultEntry;
+using test::broken_rule;
 
 namespace {
 
@@ -31,8 +35,9 @@ Result random_result(std::mt19937& random, int depth, std::vector<std::string>& 
     const auto number = [&](const std::string& key) {
         std::uniform_real_distribution<double> exponent(-4.0, 5.0), sign(-1.0, 1.0);
         const double value = sign(random) * std::pow(10.0, exponent(random));
-        const std::vector<NumberFormat> formats{report::fixed(2, "dB"), report::significant(4, "N"),
-                                                report::fixed(1, "ms", 1e3), report::significant(6)};
+        const std::vector<NumberFormat> formats{report::fixed(2, "dB"),      report::significant(4, "N"),
+                                                report::fixed(1, "ms", "s"), report::significant(6),
+                                                report::fixed(0, "%", "1"),  report::fixed(3, "N").with_sign()};
         report::Number of(value);
         const NumberFormat& format = formats[random() % formats.size()];
         if (random() % 4 == 0) of.uncertainty = 0.01 * std::abs(value);
@@ -81,41 +86,44 @@ void check_json(const Result& result, const json& printed) {
     }
 }
 
-/// The parts of JSON Schema that outputs use: type, properties, required, additionalProperties, items, const, anyOf.
-std::string broken_rule(const json& schema, const json& value, const std::string& where) {
-    const auto is = [&](const std::string& type) {
-        return type == "null"      ? value.is_null()
-               : type == "number"  ? value.is_number()
-               : type == "integer" ? value.is_number_integer()
-               : type == "string"  ? value.is_string()
-               : type == "boolean" ? value.is_boolean()
-               : type == "array"   ? value.is_array()
-                                   : value.is_object();
-    };
-    if (schema.contains("const") && value != schema["const"]) return where + ": not the constant";
-    if (schema.contains("anyOf")) {
-        for (const json& one : schema["anyOf"])
-            if (broken_rule(one, value, where).empty()) return {};
-        return where + ": none of the kinds";
+/// The cells of a CSV file by the first one.
+std::map<std::string, std::vector<std::string>> csv_rows(const std::string& csv) {
+    std::map<std::string, std::vector<std::string>> rows;
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);) {
+        std::vector<std::string> cells(1);
+        bool is_quoted = false;
+        for (const char c : line)
+            if (c == '"') is_quoted = !is_quoted;
+            else if (c == ',' && !is_quoted) cells.emplace_back();
+            else cells.back() += c;
+        CHECK(rows.emplace(cells.front(), cells).second);
     }
-    if (!schema.contains("type")) return {};
-    const json types = schema["type"].is_array() ? schema["type"] : json::array({schema["type"]});
-    if (std::ranges::none_of(types, [&](const json& type) { return is(type.get<std::string>()); }))
-        return where + ": " + value.dump() + " is not " + types.dump();
-    if (value.is_array() && schema.contains("items"))
-        for (std::size_t n = 0; n < value.size(); ++n)
-            if (const std::string rule = broken_rule(schema["items"], value[n], where + "." + std::to_string(n));
-                !rule.empty())
-                return rule;
-    if (!value.is_object()) return {};
-    for (const json& key : schema.value("required", json::array()))
-        if (!value.contains(key.get<std::string>())) return where + ": without " + key.dump();
-    for (const auto& [key, one] : value.items()) {
-        if (!schema["properties"].contains(key)) return where + ": unknown " + key;
-        if (const std::string rule = broken_rule(schema["properties"][key], one, where + "." + key); !rule.empty())
-            return rule;
+    return rows;
+}
+
+/// The CSV value of each number, printed as the entry is, beside its unit.
+void check_csv(const Result& result, const std::map<std::string, std::vector<std::string>>& rows,
+               const std::string& above) {
+    for (const ResultEntry& entry : result.entries) {
+        const std::string path = above + entry.key;
+        CAPTURE(path);
+        if (const auto* quantity = std::get_if<ResultEntry::Quantity>(&entry.value)) {
+            REQUIRE(rows.contains(path));
+            REQUIRE(rows.at(path).size() == 3);
+            ResultEntry again = entry;
+            report::Number number(std::stod(rows.at(path)[1]));
+            number.uncertainty = quantity->number.uncertainty;
+            again.value = ResultEntry::Quantity{number, quantity->format};
+            CHECK(report::shown(again) == report::shown(entry));
+            CHECK(rows.at(path)[2] == report::unit_of_value(entry));
+        } else if (const auto* table = std::get_if<ResultEntry::Rows>(&entry.value)) {
+            for (std::size_t n = 0; n < table->rows.size(); ++n)
+                check_csv(table->rows[n], rows, fmt::format("{}.{}.", path, n));
+        } else if (const auto* children = std::get_if<ResultEntry::Children>(&entry.value)) {
+            check_csv(children->results.front(), rows, path + ".");
+        }
     }
-    return {};
 }
 
 }  // namespace
@@ -133,6 +141,7 @@ TEST_CASE("random results have equal digits in text, JSON, HTML and PDF") {
             CHECK_THAT(html, ContainsSubstring(digits));
         }
         check_json(result, json::parse(report::json_of(result).dump()));
+        check_csv(result, csv_rows(report::csv_of(result)), "");
         if (n > 2) continue;
         const std::string pdf = report::pdf_of(report::title_of(result), report::blocks_of(result)).bytes;
         const std::optional<std::string> extracted = test::pdf_text(folder, folder.write("a.pdf", pdf));
@@ -193,7 +202,9 @@ TEST_CASE("the JSON of orders follows its schema, and its files have one content
     CHECK(test::slurp(folder.path / "a.txt") == text);
     CHECK_THAT(text, ContainsSubstring("0.0707"));
     CHECK_THAT(test::slurp(folder.path / "a.html"), ContainsSubstring("0.0707"));
+    CHECK_THAT(test::slurp(folder.path / "a.csv"), ContainsSubstring("path,value,unit\n"));
     CHECK_THAT(test::slurp(folder.path / "a.csv"), ContainsSubstring("channels.0.orders.0.rms,0.0707"));
+    CHECK_THAT(test::slurp(folder.path / "a.csv"), ContainsSubstring("\nduration_s,2,s\n"));
     CHECK(test::slurp(folder.path / "a.pdf").starts_with("%PDF-"));
     CHECK_THAT(folder.tactus("orders --rate 100 --orders 60 tone.wav").out,
                ContainsSubstring("warning: channel 1: order"));
@@ -201,4 +212,38 @@ TEST_CASE("the JSON of orders follows its schema, and its files have one content
     CHECK(none.code == 2);
     CHECK_THAT(none.err, ContainsSubstring("no figure"));
     CHECK(folder.tactus("orders --rate 100 tone.wav -o a.xls").code == 2);
+}
+
+TEST_CASE("the JSON of analyses of records follows their schemas") {
+    const test::RecordFolder folder;
+    std::vector<double> x;
+    for (int n = 0; n < 12000; ++n)
+        for (const double phase : {0.0, 0.4, 1.1})
+            x.push_back(0.1 * std::sin(2.0 * std::numbers::pi * 100.0 * n / 4000.0 + phase) + 0.02 * std::sin(1e4 * n));
+    folder.sound("a.wav", x, 3, 4000);
+    folder.text("bad.wav", "no sound");
+    REQUIRE(folder.tactus("generate schema schemas").code == 0);
+    struct Case {
+        const char *verb, *options;
+        int code = 0;
+    };
+    for (const Case& one : {Case{"spectrum", "a.wav"},
+                            {"spectrum", "a.wav --psd-only"},
+                            {"spectrum", "a.wav bad.wav --mark 100:saw:3 --envelope 200:800 --octave-filters third", 2},
+                            {"spectrum", "a.wav --calibration '9 m/s^2' --integrate velocity --mark 100:saw"},
+                            {"exposure", "a.wav --full-scale '100 m/s^2'"},
+                            {"exposure", "a.wav bad.wav --full-scale '100 m/s^2'", 2},
+                            {"exposure", "a.wav --full-scale '100 m/s^2' --body whole"},
+                            {"exposure", "a.wav --full-scale '100 m/s^2' --body rail"},
+                            {"response", "a.wav --channel 1,2 -o r.csv"},
+                            {"compare", "a.wav a.wav"},
+                            {"compare", "a.wav bad.wav", 2},
+                            {"equalise", "r.csv -o e.toml --band 80:800 --signal a.wav"}}) {
+        const test::RecordOutcome outcome = folder.tactus(fmt::format("{} {} --json", one.verb, one.options));
+        CAPTURE(one.verb, one.options, outcome.err);
+        REQUIRE(outcome.code == one.code);
+        if (outcome.out.empty()) continue;
+        const json schema = json::parse(test::slurp(folder.path / fmt::format("schemas/{}.schema.json", one.verb)));
+        CHECK(broken_rule(schema, outcome.answer(), one.verb) == "");
+    }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rig and the gripper patches, as their readers are told to run them.
 #include "tests/support/catch.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <nlohmann/json.hpp>
@@ -19,7 +20,9 @@ json rig(const Folder& folder, const std::string& what, const std::string& out =
     const Outcome o = folder.tactus("gripper " + what + " --json --out " + (folder.path / out).string());
     INFO(o.err);
     REQUIRE(o.code == 0);
-    return json::parse(o.out);
+    const json answer = json::parse(o.out);
+    CHECK(tactus::test::broken_schema(folder, "gripper", answer) == "");
+    return answer;
 }
 
 const json& row_of(const json& answer, const std::string& motor, const std::string& object, double rate,

@@ -3,6 +3,7 @@
 #include "dsp/control/stated_hand.hpp"
 #include "dsp/simulate/device_model.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <nlohmann/json.hpp>
@@ -24,6 +25,10 @@ TEST_CASE("check warns when the energy cap of an output is off") {
     CHECK(on["outputs"][0]["energy_bound_mJ"].get<double>() > 0.0);
     CHECK(on["outputs"][0]["energy_bound_mJ"].get<double>() < 2.0);
     CHECK(on["warnings"].empty());
+    CHECK(tactus::test::broken_schema(folder, "check", on) == "");
+    const json wrong = json::parse(folder.tactus("check --json " + folder.write("w.toml", "wires = 3").string()).out);
+    CHECK(wrong["errors"].size() == 1);
+    CHECK(tactus::test::broken_schema(folder, "check", wrong) == "");
     const json off = json::parse(folder.tactus("check touch-sphere --json --set hand_out.energy_cap=false").out);
     CHECK(off["outputs"][0]["energy_cap"] == false);
     CHECK(off["outputs"][0]["energy_bound_mJ"].is_null());
@@ -36,7 +41,9 @@ TEST_CASE("check lists and draws which walls a device bears", "[slow]") {
     const std::string figure = (folder.path / "walls.svg").string();
     const Outcome o = folder.tactus("check touch-sphere --json --z-width --z-width-figure " + figure);
     REQUIRE(o.code == 0);
-    const json rows = json::parse(o.out)["z_width"];
+    const json answer = json::parse(o.out);
+    CHECK(tactus::test::broken_schema(folder, "check", answer) == "");
+    const json rows = answer["z_width"];
     REQUIRE(rows.size() > 20);
     for (const json& row : rows)
         if (row["device"] == "simulated, ideal" && row["delay_ms"] == 0.0) {

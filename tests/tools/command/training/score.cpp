@@ -5,6 +5,7 @@
 #include "dsp/coupling/placement.hpp"
 #include "tests/dsp/training/block.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <fmt/format.h>
@@ -96,7 +97,9 @@ json scored(const Folder& folder, const std::string& words) {
     const Outcome o = folder.tactus("score --json " + words);
     INFO(o.err);
     REQUIRE(o.code == 0);
-    return json::parse(o.out);
+    const json answer = json::parse(o.out);
+    CHECK(test::broken_schema(folder, "score", answer) == "");
+    return answer;
 }
 
 }  // namespace
@@ -147,7 +150,7 @@ TEST_CASE("the scores of a run have exactly the documented shape", "[slow]") {
     std::vector<std::string> keys;
     for (const auto& [key, value] : score.items()) keys.push_back(key);
     CHECK(keys == std::vector<std::string>{"breakthrough", "force", "heat_s", "over_mm3", "path_mm", "plane", "seconds",
-                                           "spared", "strokes", "under_mm3", "validity"});
+                                           "spared", "strokes", "under_mm3", "validity", "version"});
     CHECK(score["plane"].size() == 3);
     CHECK(score["force"].size() == 7);
     CHECK(score["force"]["device_scale"] == 1.0);

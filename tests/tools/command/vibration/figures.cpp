@@ -169,3 +169,32 @@ TEST_CASE(
     CHECK(beyond.code == 2);
     CHECK_THAT(beyond.err, ContainsSubstring("end at 4 kHz"));
 }
+
+TEST_CASE("figures in the style of a journal are 85 mm wide, and no text is below 6 points or outside of them") {
+    const RecordFolder folder;
+    std::vector<double> both;
+    for (const double v : tones({{100.0, 0.4}, {200.0, 0.1}}, 2.0, 4000.0)) {
+        both.push_back(v);
+        both.push_back(0.5 * v);
+    }
+    folder.sound("a.wav", both, 2, 4000);
+    for (const char* command : {"response a.wav", "orders a.wav --rate 100 --waterfall w.csv --over frequency",
+                                "orders a.wav --rate 100 --waterfall w.csv --against speed"}) {
+        CAPTURE(command);
+        REQUIRE(folder.tactus(fmt::format("{} --quiet --style journal -o f.svg -o f.png", command)).code == 0);
+        const std::string svg = slurp(folder.path / "f.svg");
+        const double width = std::stod(svg.substr(svg.find("width=\"") + 7));
+        CHECK(width == Approx(85.0 / 25.4 * 96.0).margin(0.5));
+        int texts = 0;
+        for (std::size_t at = svg.find("<text"); at != std::string::npos; at = svg.find("<text", at + 1)) {
+            const double size = std::stod(svg.substr(svg.find("font-size=\"", at) + 11)),
+                         x = std::stod(svg.substr(svg.find("x=\"", at) + 3));
+            CHECK(size >= 8.0 - 1e-6);
+            CHECK(x >= 0.0);
+            CHECK(x <= width);
+            ++texts;
+        }
+        CHECK(texts > 10);
+    }
+    CHECK(folder.tactus("response a.wav --style poster").code == 2);
+}

@@ -2,6 +2,7 @@
 // model: fits the bundled saw, and what it writes is played by a patch.
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <nlohmann/json.hpp>
@@ -63,6 +64,7 @@ TEST_CASE("a model of a stretch of each recording says which") {
     INFO(made.err);
     REQUIRE(made.code == 0);
     CHECK(json::parse(made.out)["rows"][0]["used_s"] == json({0.2, 1.2}));
+    CHECK(tactus::test::broken_schema(folder, "model", json::parse(made.out)) == "");
     const Outcome beyond = folder.tactus("model " + set + out + " --to 1000");
     CHECK(beyond.code == 2);
     CHECK_THAT(beyond.err, ContainsSubstring("s long"));

@@ -3,6 +3,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sndfile.h>
@@ -86,6 +87,7 @@ TEST_CASE("validate: with its equaliser the bundled handle has the vibration of 
     const json answer = json::parse(outcome.out);
     CHECK(answer["verdict"] == "pass");
     CHECK(answer["out"] == "handle:sum.out");
+    CHECK(tactus::test::broken_schema(folder, "validate", answer) == "");
     CHECK(answer["stretch_of_run"] == json{{"from_s", 1.5}, {"to_s", 3.5}});
     CHECK(answer["synthesised"] == true);
     REQUIRE(answer["runs"].size() == 4);
@@ -254,7 +256,9 @@ TEST_CASE("exposure takes folders: a row per file, and no sum over a day that wo
     const json whole = json::parse(day.out);
     CHECK(whole["a8"].get<double>() == Approx(whole["operations"][0]["a_hw"][0].get<double>()).epsilon(1e-6));
     const Outcome text = folder.tactus("exposure " + saws + " --full-scale '50 m/s^2' --duration 2");
-    CHECK(lines_of(text.out) == 6);
+    // A table with a line for each file, and the verdict.
+    CHECK(lines_of(text.out) == 7);
+    for (const char* needed : {"a.wav", "d.wav", "A(8)"}) CHECK(text.out.find(needed) != std::string::npos);
 }
 
 TEST_CASE("spectrum --report is one page of figures, lines and bands for all files") {
@@ -264,8 +268,8 @@ TEST_CASE("spectrum --report is one page of figures, lines and bands for all fil
     const fs::path page = folder.path / "page.html";
     REQUIRE(folder.tactus("spectrum " + (folder.path / "in").string() + " --report " + page.string()).code == 0);
     const std::string html = slurp(page);
-    for (const char* needed : {"<!doctype html>", "a&amp;b.wav", "c.wav", "order 2", "Fundamental 233.0",
-                               "Fundamental 150.0", "third octave", "Methods"}) {
+    for (const char* needed : {"<!doctype html>", "a&amp;b.wav", "c.wav", "order 2", "fundamental", "233.0", "150.0",
+                               "third octave", "Methods"}) {
         INFO(needed);
         CHECK(html.find(needed) != std::string::npos);
     }

@@ -4,6 +4,7 @@
 #include "tests/support/places.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/peak_memory.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -88,6 +89,7 @@ TEST_CASE(
     CHECK(result["damping_ratio"].get<double>() == Approx(0.2935).epsilon(0.01));
     CHECK(result["latency_s"].get<double>() == Approx(0.0).margin(1e-4));
     CHECK(result["response_csv"] == csv);
+    CHECK(tactus::test::broken_schema(folder, "measure", result) == "");
     REQUIRE(result["thd"].size() >= 2);
     CHECK(result["thd"][0]["order"] == 2);
     CHECK(result["thd"][0]["percent"] < 0.1);
@@ -191,7 +193,9 @@ TEST_CASE("a person reads the verdict first, then why, and a figure is written a
     const Outcome text = folder.tactus("compare " + a + " " + b + " --plot " + svg);
     CHECK(text.code == 1);
     CHECK(text.out.starts_with("FAIL: "));
-    CHECK(text.out.find("FAIL lsd_db") < text.out.find("150.00 Hz in the output"));
+    std::smatch failed;
+    REQUIRE(std::regex_search(text.out, failed, std::regex("\\n +FAIL +lsd_db ")));
+    CHECK(text.out.find("150.00 Hz in the output", static_cast<std::size_t>(failed.position())) != std::string::npos);
     CHECK(slurp(svg).starts_with("<svg"));
     CHECK(slurp(svg).find("Not the same vibration") != std::string::npos);
     CHECK(folder.tactus("compare " + a + " " + a + " --plot " + png).code == 0);
