@@ -2,7 +2,7 @@
 #include "assets/file/json.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/analyse/stiffness.hpp"
-#include "tools/analysis/patch_check.hpp"
+#include "tools/analysis/patch/patch_check.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"

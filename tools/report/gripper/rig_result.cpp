@@ -28,15 +28,15 @@ bool is_wall(const RigCell& cell) { return cell.object.kind == control::ObjectKi
 
 const Fields<RigCell>& cell_fields() {
     using C = RigCell;
-    const auto unless_wall = [](double value, const C& c) { return is_wall(c) ? std::nullopt : std::optional(value); };
+    const auto if_soft = [](double value, const C& c) { return is_wall(c) ? std::nullopt : std::optional(value); };
     static const Fields<C> all =
         Fields<C>("condition on the rig")
             .text("motor", "motor", &C::motor)
             .text("object", "object", [](const C& c) { return c.object.name; })
             .number("stiffness_N_per_mm", "", significant(4, "N/mm"),
-                    [=](const C& c) { return unless_wall(c.object.stiffness * 1e-3, c); })
+                    [=](const C& c) { return if_soft(c.object.stiffness * 1e-3, c); })
             .number("damping_Ns_per_mm", "", significant(4, "N s/mm"),
-                    [=](const C& c) { return unless_wall(c.object.damping * 1e-3, c); })
+                    [=](const C& c) { return if_soft(c.object.damping * 1e-3, c); })
             .number("rate_hz", "rate", significant(6, "Hz"), &C::rate)
             .number("amplitude_mm", "amplitude", significant(6, "mm"), [](const C& c) { return c.amplitude * 1e3; });
     return all;
@@ -50,8 +50,16 @@ auto judged(Read read) {
     };
 }
 
+/// Of a row that was judged with a yielding object.
+template <class Read>
+auto unless_wall(Read read) {
+    return [read](const RigRow& row) { return is_wall(row.cell) ? std::nullopt : judged(read)(row); };
+}
+
 const Fields<RigRow>& row_fields() {
     using F = Fidelity;
+    const auto stiffness = [](const F& f) { return f.rendered_stiffness * 1e-3; };
+    const auto damping = [](const F& f) { return f.rendered_damping * 1e-3; };
     const auto fidelity = [](auto member) { return [member](const RigRow& row) { return row.fidelity.*member; }; };
     static const Fields<RigRow> all =
         Fields<RigRow>("fidelity of one condition")
@@ -59,10 +67,10 @@ const Fields<RigRow>& row_fields() {
             .number("gain_error_db", "gain", fixed(2, "dB"), fidelity(&F::gain_error_db))
             .number("phase_error_deg", "phase", fixed(1, "°"), fidelity(&F::phase_error_deg))
             .number("nrmse", "NRMSE", fixed(1, "%", "1"), fidelity(&F::nrmse))
-            .number("rendered_stiffness_N_per_mm", "k", significant(4, "N/mm"),
-                    judged([](const F& f) { return f.rendered_stiffness * 1e-3; }))
-            .number("rendered_damping_Ns_per_mm", "b", significant(3, "N s/mm"),
-                    judged([](const F& f) { return f.rendered_damping * 1e-3; }))
+            .number("rendered_stiffness_N_per_mm", "", significant(4, "N/mm"), judged(stiffness))
+            .number("rendered_damping_Ns_per_mm", "", significant(3, "N s/mm"), judged(damping))
+            .number("", "k", significant(4, "N/mm"), unless_wall(stiffness))
+            .number("", "b", significant(3, "N s/mm"), unless_wall(damping))
             .flag("slip", "", [](const RigRow& r) { return r.fidelity.slip_share > 0.0; })
             .flag("saturated", "", [](const RigRow& r) { return r.fidelity.saturated_share > 0.0; })
             .number("slip_share", "slips", fixed(0, "%", "1"), judged(&F::slip_share))

@@ -2,7 +2,7 @@
 // What `check` found in a patch as a result.
 #pragma once
 
-#include "tools/analysis/patch_check.hpp"
+#include "tools/analysis/patch/patch_check.hpp"
 #include "tools/report/result/fields.hpp"
 
 namespace tactus::report {

@@ -19,6 +19,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <regex>
 #include <vector>
 
 using nlohmann::json;

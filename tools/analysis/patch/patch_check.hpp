@@ -7,8 +7,8 @@
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/schedule.hpp"
 #include "graph/analyse/stiffness.hpp"
-#include "tools/analysis/device_processes.hpp"
 #include "tools/analysis/passivity/z_width.hpp"
+#include "tools/analysis/patch/device_processes.hpp"
 #include "tools/analysis/patch_stiffness.hpp"
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/analysis/device_processes.hpp"
+#include "tools/analysis/patch/device_processes.hpp"
 
 #include "devices/hosted/placement.hpp"
 #include "graph/node/options.hpp"

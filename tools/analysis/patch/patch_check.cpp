@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/analysis/patch_check.hpp"
+#include "tools/analysis/patch/patch_check.hpp"
 
 #include "dsp/core/error.hpp"
 #include "engine/io/host.hpp"
