@@ -107,12 +107,20 @@ std::optional<ColumnUnit> parse_column_unit(std::string_view text) {
 NamedColumn parse_column_name(std::string_view header) {
     header = trimmed(header);
     if (const auto split = split_bracket(header))
-        if (std::optional<ColumnUnit> unit = parse_column_unit(split->second); unit && !split->first.empty())
-            return {std::string(split->first), std::move(unit)};
+        if (std::optional<ColumnUnit> unit = parse_column_unit(split->second); unit && !split->first.empty()) {
+            std::string_view name = split->first;
+            if (name.size() > 1 && name.ends_with('/')) name = trimmed(name.substr(0, name.size() - 1));
+            return {std::string(name), std::move(unit)};
+        }
     for (const std::string_view between : {" / ", " in ", ", ", "; "})
         if (const std::size_t at = header.rfind(between); at != std::string_view::npos && at > 0)
             if (std::optional<ColumnUnit> unit = parse_column_unit(header.substr(at + between.size())))
                 return {std::string(trimmed(header.substr(0, at))), std::move(unit)};
+    // "t/s" and "a/(m/s²)": quantity over unit, as ISO 80000-1 writes it. "m/s" alone is a unit.
+    if (const std::size_t at = header.find('/'); at != std::string_view::npos && at > 0 && !parse_column_unit(header) &&
+                                                 !parse_column_unit(header.substr(0, at)))
+        if (std::optional<ColumnUnit> unit = parse_column_unit(header.substr(at + 1)))
+            return {std::string(trimmed(header.substr(0, at))), std::move(unit)};
     for (const std::string_view suffix : suffixes)
         if (header.size() > suffix.size() + 1 && header.ends_with(suffix) &&
             header[header.size() - suffix.size() - 1] == '_') {

@@ -215,13 +215,31 @@ private:
         }
     }
 
+    /// A column of row numbers is no vibration.
+    bool counts_rows(std::size_t i) const {
+        constexpr std::array<std::string_view, 18> names{"sample",       "samples",    "sample number",
+                                                         "sample no",    "sample no.", "sample index",
+                                                         "index",        "row",        "frame",
+                                                         "frame number", "packet",     "counter",
+                                                         "seq",          "sequence",   "no",
+                                                         "no.",          "nr",         "#"};
+        return shape_.header_line > 0 && std::ranges::find(names, lower(out_.named[i].name)) != names.end();
+    }
+
+    /// "channel" of "Channel 3"; empty for names without a number at their end, and for numbers alone.
+    static std::string numbered_family(std::string_view name) {
+        const std::size_t end = name.find_last_not_of("0123456789");
+        if (end == std::string_view::npos || end + 1 == name.size()) return "";
+        return lower(trimmed(name.substr(0, end + 1)));
+    }
+
     void choose_values() {
         for (const std::string& wanted : selection_.columns) out_.values.push_back(find(wanted, "column"));
         if (!out_.values.empty()) return;
         std::vector<std::size_t> numbers, accelerations;
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
             if (i == out_.time || shape_.kinds[i] != CellKind::number) continue;
-            if (is_clock(i)) continue;
+            if (is_clock(i) || counts_rows(i)) continue;
             numbers.push_back(i);
             const auto& unit = out_.named[i].unit;
             if (unit ? unit->is_acceleration() : lower(out_.named[i].name).starts_with("acc"))
@@ -234,8 +252,18 @@ private:
                        out_.named[i].unit->dimension == out_.named[numbers.front()].unit->dimension;
             }))
             out_.values = numbers;
-        if (out_.values.empty())
-            fail(fmt::format("choose columns with --column; there are {}", fmt::join(shape_.names, ", ")));
+        if (out_.values.empty() && !numbers.empty() && std::ranges::all_of(numbers, [&](std::size_t i) {
+                const std::string family = numbered_family(out_.named[i].name);
+                return !family.empty() && family == numbered_family(out_.named[numbers.front()].name);
+            }))
+            out_.values = numbers;
+        if (out_.values.empty()) {
+            std::vector<std::string> all;
+            for (const std::size_t i : numbers) all.push_back(std::to_string(i + 1));
+            fail(fmt::format("choose columns with --column{}; there are {}",
+                             all.empty() ? "" : fmt::format(", as --column {}", fmt::join(all, ",")),
+                             fmt::join(shape_.names, ", ")));
+        }
     }
 
     const LogShape& shape_;

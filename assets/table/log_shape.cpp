@@ -285,10 +285,11 @@ private:
             const bool bracket =
                 (field.front() == '[' && field.back() == ']') || (field.front() == '(' && field.back() == ')');
             const bool unit = parse_column_unit(as_utf8(field)).has_value();
-            const std::string word = lower(field);
-            if (!bracket && !unit && word != "counts" && word != "count" && word != "raw" && word != "lsb" &&
-                word != "%" && word != "1" && word != "degc" && word != "°c" && word != "c" && word != "sequence")
-                return false;
+            // The last four stand in front of the units, where rows have no number.
+            constexpr std::array<std::string_view, 14> words{"counts", "count", "raw",     "lsb",      "%",
+                                                             "1",      "degc",  "°c",      "c",        "sequence",
+                                                             "unit",   "units", "einheit", "einheiten"};
+            if (!bracket && !unit && std::ranges::find(words, lower(field)) == words.end()) return false;
             units += unit || bracket;
         }
         return units > 0;

@@ -153,6 +153,10 @@ TEST_CASE("units and names are told apart") {
     CHECK(name("timestamp_ms") == "timestamp_ms|ms");
     CHECK(name("Time / s") == "Time|s");
     CHECK(name("a in m/s2") == "a|m/s2");
+    CHECK(name("t/s") == "t|s");
+    CHECK(name("a/(m/s²)") == "a|m/s²");
+    CHECK(name("m/s^2") == "m/s^2|none");
+    CHECK(name("left/right") == "left/right|none");
     CHECK(name("AI 1 (Channel 3)") == "AI 1 (Channel 3)|none");
     CHECK(name("flag") == "flag|none");
     CHECK(table::parse_column_unit("mg")->si == Approx(9.80665e-3));
@@ -172,6 +176,18 @@ TEST_CASE("of several sensors the accelerometer is chosen") {
     CHECK(volts.names == std::vector<std::string>{"Channel A", "Channel B"});
     CHECK(unit_of(volts, 0) == "mV");
     CHECK(volts.times[1] == Approx(1e-3));
+}
+
+TEST_CASE("all of numbered channels are read, row numbers are none, and a question names the columns to choose from") {
+    const auto names = [](const char* text) { return read_logger(text).names; };
+    CHECK(names("Time [s],Channel 0,Channel 1\n0,1,2\n0.1,2,3\n") ==
+          std::vector<std::string>{"Channel 0", "Channel 1"});
+    CHECK(names("Sample Number,t_s,Analog 0 (V),Analog 1 (V)\n7,0,1,2\n8,0.1,2,3\n") ==
+          std::vector<std::string>{"Analog 0", "Analog 1"});
+    CHECK(names("Name,Time,Acc X\nUnit,s,m/s²\n,0,1\n,0.1,2\n") == std::vector<std::string>{"Acc X"});
+    CHECK_THROWS_WITH(read_logger("t_s,one,two\n0,1,2\n0.1,2,3\n"),
+                      ContainsSubstring("as --column 2,3; there are t_s"));
+    CHECK_THROWS_WITH(read_logger("0,1,2,3\n0.1,2,3,4\n"), ContainsSubstring("as --column 2,3,4; there are 1"));
 }
 
 TEST_CASE("a header that does not fit its rows is refused, and a restart of the logger said") {
