@@ -3,6 +3,7 @@
 
 #include "assets/file/room.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/sound/stated_size.hpp"
 #include "assets/sound/wave_header.hpp"
 #include "dsp/core/error.hpp"
 
@@ -91,9 +92,15 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::st
         const std::string_view why = sf_strerror(nullptr);
         // What libsndfile says of headers without a rate, and of chunks that follow each other in no known order.
         if (why.starts_with("Internal error")) fail("cannot be read as sound: its header is damaged");
+        // Its first bytes are of no format, and the ending of its name is of one that has no first bytes of its own.
+        if (why.starts_with("File does not exist")) fail("cannot be read as sound: it holds none of a known format");
         fail(fmt::format("cannot be read as sound: {}", why));
     }
     if (info.frames <= 0) fail("the sound is empty");
+    if (const std::optional<std::uint64_t> stated = stated_size(path);
+        note && stated && static_cast<double>(*stated) > size)
+        *note =
+            fmt::format("the sound is cut short: its header states {} bytes and the file has {:.0f}", *stated, size);
     if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
     if (info.samplerate > fastest_rate)
         fail(fmt::format("its header states {} samples per second; the limit is {}", info.samplerate, fastest_rate));

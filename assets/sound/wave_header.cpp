@@ -37,6 +37,11 @@ bool is_chunk_name(std::string_view name) {
     return std::ranges::all_of(name, [](char c) { return c >= ' ' && c < 127; });
 }
 
+bool is_known_chunk(std::string_view name) {
+    constexpr std::array<std::string_view, 6> known{"fmt ", "data", "LIST", "fact", "PEAK", "bext"};
+    return std::ranges::find(known, name) != known.end();
+}
+
 }  // namespace
 
 std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path) {
@@ -59,7 +64,7 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
     std::string format, kept;
     std::optional<std::uint64_t> start;
     std::uint64_t size = 0, wanted = 0, long_size = 0;
-    bool is_before_format = false, is_wrong = !is_rf64 && stated + 8 > present;
+    bool is_before_format = false, lacks_padding = false, is_wrong = !is_rf64 && stated + 8 > present;
     for (std::uint64_t at = 12; at + 8 <= present;) {
         const std::string chunk = read(at, 8);
         const std::string_view name = std::string_view(chunk).substr(0, 4);
@@ -90,10 +95,14 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
         } else if ((name == "LIST" || name == "bext") && length <= std::min(left, max_kept)) {
             put_chunk(kept, name, read(at + 8, length));
         }
-        at += 8 + length + length % 2;
+        const std::uint64_t next = at + 8 + length;
+        // Some programs leave out the byte behind a chunk of odd length.
+        const bool is_unpadded = length % 2 != 0 && is_known_chunk(read(next, 4));
+        lacks_padding = lacks_padding || is_unpadded;
+        at = next + (is_unpadded ? 0 : length % 2);
     }
     if (!start || format.size() < 16 || size == 0) return std::nullopt;
-    if (!is_wrong && !is_before_format) return std::nullopt;
+    if (!is_wrong && !is_before_format && !lacks_padding) return std::nullopt;
     const std::uint64_t frame = std::max<std::uint64_t>(1, number_at(format, 12, 2));
     size -= size % frame;
     if (size == 0) return std::nullopt;
@@ -121,6 +130,7 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
     const bool is_unknown = wanted == 0 || wanted >= 0x7fffff00;
     made.note =
         is_before_format && !is_wrong ? std::string("the samples stand before their format in the file")
+        : lacks_padding && !is_wrong  ? std::string("a chunk of odd length lacks its padding byte")
         : size >= wanted && !is_unknown
             ? fmt::format("the header states {} bytes and the file has {}; all samples are there", stated + 8, present)
         : is_unknown ? fmt::format(

@@ -168,6 +168,28 @@ TEST_CASE("sounds whose header has no rate, no channels or two chunks of samples
                       ContainsSubstring("its header is damaged"));
 }
 
+TEST_CASE("an AIFF or AU that is cut is read to the cut with a note, and a chunk without padding is passed") {
+    const SoundFiles files;
+    const auto note_of = [&](const std::string& name, const std::string& bytes) {
+        file::write_whole_file(files.folder / name, bytes);
+        return sound::SoundReader(files.folder / name).note();
+    };
+    const std::string aiff = aifc_of("", 16, samples_of(2, 16, true)), samples = samples_of(2, 16, true),
+                      au = ".snd" + number_of(24, 4, true) + number_of(samples.size(), 4, true) +
+                           number_of(3, 4, true) + number_of(8000, 4, true) + number_of(1, 4, true) + samples;
+    for (const auto& [name, whole] : {std::pair{"a.aiff", aiff}, {"a.au", au}}) {
+        CAPTURE(name);
+        CHECK(note_of(name, whole).empty());
+        CHECK_THAT(note_of(name, whole.substr(0, whole.size() - 300)), ContainsSubstring("cut short"));
+    }
+    const std::string wave = wave_of(format_piece(1, 1, 2, false), samples_of(2, 16, false));
+    std::string unpadded = wave;
+    unpadded.insert(12, "LIST" + number_of(3, 4, false) + "abc");
+    unpadded.replace(4, 4, number_of(unpadded.size() - 8, 4, false));
+    files.check("a.wav", unpadded);
+    CHECK_THAT(note_of("a.wav", unpadded), ContainsSubstring("padding"));
+}
+
 TEST_CASE("scipy reads the same rate and numbers from waves", "[slow]") {
     if (std::system("/usr/bin/python3 -c 'import scipy' >/dev/null 2>&1") != 0)
         return test::skip("there is no scipy (package python3-scipy)");

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/stated_size.hpp"
+
+#include <array>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+namespace tactus::sound {
+
+namespace {
+
+using Head = std::array<char, 24>;
+
+std::uint64_t big_number(std::span<const char> bytes) {
+    std::uint64_t number = 0;
+    for (const char byte : bytes) number = number << 8 | static_cast<unsigned char>(byte);
+    return number;
+}
+
+std::uint64_t small_number(std::span<const char> bytes) {
+    std::uint64_t number = 0;
+    for (std::size_t n = bytes.size(); n-- > 0;) number = number << 8 | static_cast<unsigned char>(bytes[n]);
+    return number;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> stated_size(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    Head head{};
+    if (!file.read(head.data(), head.size())) return std::nullopt;
+    const std::string_view mark(head.data(), 4), kind(head.data() + 8, 4);
+    const std::span bytes(head);
+    if (mark == "FORM" && (kind == "AIFF" || kind == "AIFC")) return 8 + big_number(bytes.subspan(4, 4));
+    if (mark == "riff") return small_number(bytes.subspan(16, 8));
+    if (mark == ".snd" || mark == "dns.") {
+        const auto number = mark == ".snd" ? big_number : small_number;
+        const std::uint64_t start = number(bytes.subspan(4, 4)), size = number(bytes.subspan(8, 4));
+        return size == 0xffffffff ? std::nullopt : std::optional(start + size);
+    }
+    return std::nullopt;
+}
+
+}  // namespace tactus::sound

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The size of a sound's file by its own header.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace tactus::sound {
+
+/// Bytes that an AIFF, AIFC, AU or W64 states for its whole file; none for other formats and where the header leaves
+/// it open. libsndfile reads such files to their end without an error, however short they are. For waves see
+/// repaired_wave_header.
+std::optional<std::uint64_t> stated_size(const std::filesystem::path& path);
+
+}  // namespace tactus::sound
