@@ -96,7 +96,9 @@ void add_in_pieces(Hash& hash, std::string_view bytes) {
 std::string read_sealed(const std::filesystem::path& path) {
     std::string bytes = file::read_whole_file(path);
     if (bytes.size() < seal_size || bytes.compare(bytes.size() - seal_size, seal_mark.size(), seal_mark) != 0)
-        throw Error(fmt::format("{}: the bone file is incomplete; make it again with 'tactus import'", path.string()));
+        throw Error(
+            fmt::format("{}: the bone file is incomplete, or another program wrote it; make it with 'tactus import'",
+                        path.string()));
     std::uint64_t stated = 0;
     std::memcpy(&stated, bytes.data() + bytes.size() - sizeof stated, sizeof stated);
     bytes.resize(bytes.size() - seal_size);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/markup/markup.hpp"
 
+#include "assets/file/extension.hpp"
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/constants.hpp"
@@ -241,7 +242,7 @@ ReadPoints points_of_fcsv(std::string_view text, const std::string& file) {
 
 ReadPoints read_points(const std::filesystem::path& path) {
     const std::string text = file::read_whole_file(path);
-    return path.extension() == ".fcsv" ? points_of_fcsv(text, path.string()) : points_of_text(text, path.string());
+    return file::extension_of(path) == ".fcsv" ? points_of_fcsv(text, path.string()) : points_of_text(text, path.string());
 }
 
 }  // namespace tactus::markup

@@ -3,6 +3,7 @@
 
 #include "assets/bone/import.hpp"
 #include "assets/bone/surface_points.hpp"
+#include "assets/file/extension.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/plan/kept_points.hpp"
 #include "assets/plan/mesh_unit.hpp"
@@ -38,7 +39,7 @@ std::optional<std::string> unit_of_file(const std::filesystem::path& path) {
 }
 
 bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run, Contents contents) {
-    if (bone::file_of_bone(path).extension() == ".vdb") return bone::load_bone(path);
+    if (file::extension_of(bone::file_of_bone(path)) == ".vdb") return bone::load_bone(path);
     if (!volume::is_volume_file(path)) return bone_of_mesh(path, unit_of_file(path), contents, run);
     bone::ImportOptions options;
     options.input = path;
@@ -89,7 +90,7 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
             });
         }
     } catch (const Error& error) {
-        const bool is_bone = bone::file_of_bone(fragment.file).extension() == ".vdb";
+        const bool is_bone = file::extension_of(bone::file_of_bone(fragment.file)) == ".vdb";
         throw Error(fmt::format("fragment '{}': {}{}", fragment.name, error.what(),
                                 is_bone ? "" : "; or convert it with 'tactus import' and use the .vdb"));
     }

@@ -3,6 +3,7 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/file/cache.hpp"
+#include "assets/file/extension.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/volume/nrrd_header.hpp"
 #include "dsp/core/error.hpp"
@@ -26,10 +27,10 @@ constexpr std::string_view format_line = "tactus kept result 1\n";
 
 /// Whether all data of a file is in it: a header may name files of samples.
 bool is_whole(const std::filesystem::path& path) {
-    const std::filesystem::path extension = path.extension();
+    const std::string extension = file::extension_of(path);
     constexpr std::array<const char*, 5> whole{".vdb", ".stl", ".ply", ".obj", ".nii"};
     if (std::ranges::find(whole, extension) != whole.end()) return true;
-    if (extension != ".nrrd") return path.string().ends_with(".nii.gz");
+    if (extension != ".nrrd") return lower(path.string()).ends_with(".nii.gz");
     try {
         return volume::read_nrrd_header(path).data == std::vector{path};
     } catch (const Error&) {

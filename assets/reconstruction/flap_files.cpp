@@ -9,6 +9,7 @@
 #include "assets/table/number_table.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -110,13 +111,14 @@ FlapVessel vessel_of_table(std::string_view text, const std::string& file, int b
 
 FlapVessel read_vessel(const fs::path& path, VesselKind kind, int branch, std::vector<std::string>& notes) {
     std::string stem = path.filename().string();
+    const std::string name = lower(stem);
     FlapVessel vessel;
-    if (stem.ends_with(".mrk.json")) {
+    if (name.ends_with(".mrk.json")) {
         if (branch != 0) throw Error(fmt::format("{}: only tables (.csv) have branches", path.string()));
         stem.resize(stem.size() - 9);
         for (const MarkedPoint& mark : read_marks(path, notes)) vessel.points.push_back(mark.at);
         if (vessel.points.size() < 2) throw Error(fmt::format("{}: a vessel needs two points", path.string()));
-    } else if (stem.ends_with(".csv")) {
+    } else if (name.ends_with(".csv")) {
         stem.resize(stem.size() - 4);
         vessel = vessel_of_table(file::read_whole_file(path), path.string(), branch);
     } else {

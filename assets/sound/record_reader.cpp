@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/sound/record_reader.hpp"
 
+#include "assets/file/extension.hpp"
 #include "assets/sound/sound_reader.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/signal/filter/regularise.hpp"
@@ -20,8 +21,7 @@ namespace {
 constexpr std::size_t block_frames = 65536;
 
 bool is_log(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string extension = file::extension_of(path);
     for (const std::string_view recording : {".uff", ".unv", ".uf", ".58", ".bunv", ".mat"})
         if (extension == recording) return true;
     return extension == ".csv" || extension == ".tsv" || extension == ".txt" || extension == ".log" ||

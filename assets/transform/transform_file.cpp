@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/transform/transform_file.hpp"
 
+#include "assets/file/extension.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/transform/h5_file.hpp"
 #include "dsp/core/constants.hpp"
@@ -131,7 +132,10 @@ Pose motion_of(const ItkTransform& transform, const std::string& file, int line)
     return Pose{offset * mm, glm::normalize(glm::quat_cast(stored.matrix))}.inverse();
 }
 
-bool is_h5(const std::filesystem::path& path) { return path.extension() == ".h5" || path.extension() == ".hdf5"; }
+bool is_h5(const std::filesystem::path& path) {
+    const std::string extension = file::extension_of(path);
+    return extension == ".h5" || extension == ".hdf5";
+}
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 
 #include "assets/bone/ct_threshold.hpp"
 #include "assets/bone/labels.hpp"
+#include "assets/file/extension.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/volume/length_unit.hpp"
 #include "assets/volume/reoriented_volume.hpp"
@@ -215,14 +216,28 @@ Inspection inspect_mesh(const std::filesystem::path& path, const std::optional<s
                 if (fresh) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(corner)] * unit);
                 corner = at->second;
             }
-        found.parts.push_back({"", std::abs(mesh::volume_of(part)) * 1e9, bounds_of(part)});
+        found.parts.push_back({"", mesh::volume_of(part) * 1e9, bounds_of(part)});
         found.surfaces.push_back({std::move(part), Vec3(0.90, 0.86, 0.76)});
     }
     std::stable_sort(found.parts.begin(), found.parts.end(),
-                     [](const auto& a, const auto& b) { return a.volume_mm3 > b.volume_mm3; });
+                     [](const auto& a, const auto& b) { return std::abs(a.volume_mm3) > std::abs(b.volume_mm3); });
     found.parts_in_all = found.parts.size();
-    for (std::size_t n = 0; n < found.parts.size(); ++n) found.parts[n].name = fmt::format("part {}", n + 1);
+    const bool looks_outwards = found.parts.front().volume_mm3 >= 0.0;
+    std::size_t inner = 0;
+    for (std::size_t n = 0; n < found.parts.size(); ++n) {
+        InspectedPart& part = found.parts[n];
+        // Against the largest: the hollow of a body that is around it.
+        const bool is_inner = part.volume_mm3 != 0.0 && (part.volume_mm3 > 0.0) != looks_outwards;
+        inner += is_inner;
+        part.name = fmt::format("part {}{}", n + 1, is_inner ? ", a shell that looks inwards" : "");
+        part.volume_mm3 = std::abs(part.volume_mm3);
+    }
     if (found.parts.size() > max_parts) found.parts.resize(max_parts);
+    found.notes = origin.notes;
+    if (inner > 0)
+        found.notes.push_back(
+            fmt::format("{} shell{} inwards; 'tactus import' takes such a shell as a hollow of the body around it",
+                        inner, inner == 1 ? " looks" : "s look"));
     found.notes.push_back(fmt::format("{} points, {} triangles; coordinates {}", mesh.vertices.size(),
                                       mesh.triangles.size(),
                                       given                         ? "in " + *given
@@ -288,8 +303,8 @@ Inspection inspect_bones(const std::filesystem::path& path) {
 }  // namespace
 
 Inspection inspect(const std::filesystem::path& path, const InspectionOptions& options) {
-    const std::string kind = path.extension().string();
-    if (bone::file_of_bone(path).extension() == ".vdb") return inspect_bones(path);
+    const std::string kind = file::extension_of(path);
+    if (file::extension_of(bone::file_of_bone(path)) == ".vdb") return inspect_bones(path);
     if (kind == ".stl" || kind == ".ply" || kind == ".obj") return inspect_mesh(path, options.unit);
     return inspect_volume(path, options);
 }

@@ -2,6 +2,7 @@
 #include "tools/analysis/bone/surface_file.hpp"
 
 #include "assets/bone/surface_points.hpp"
+#include "assets/file/extension.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
@@ -18,7 +19,7 @@
 namespace tactus::analysis {
 
 bool is_mesh(const std::filesystem::path& path) {
-    const auto extension = path.extension();
+    const std::string extension = file::extension_of(path);
     return extension == ".stl" || extension == ".ply" || extension == ".obj";
 }
 

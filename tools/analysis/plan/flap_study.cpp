@@ -3,6 +3,7 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/bone/mesh_part.hpp"
+#include "assets/file/extension.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/plan/mesh_unit.hpp"
 #include "assets/reconstruction/flap_files.hpp"
@@ -27,7 +28,7 @@ namespace {
 constexpr const char* no_reconstruction =
     "the plan has no reconstruction at this step: 'tactus plan reconstruct' makes a plan that has one";
 
-bool is_bone_file(const fs::path& file) { return bone::file_of_bone(file).extension() == ".vdb"; }
+bool is_bone_file(const fs::path& file) { return file::extension_of(bone::file_of_bone(file)) == ".vdb"; }
 
 std::unique_ptr<BoneAsObstacle> obstacle_of(const fs::path& file, const Pose& pose) {
     if (is_bone_file(file))

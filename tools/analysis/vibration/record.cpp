@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/vibration/record.hpp"
 
+#include "assets/file/extension.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 
@@ -63,7 +64,9 @@ std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, cons
 }
 
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& files) {
-    constexpr std::array endings{".wav", ".w64", ".flac", ".aiff", ".aif", ".caf", ".ogg", ".au", ".csv", ".tsv"};
+    // Files of text with other endings may be anything.
+    constexpr std::array endings{".wav", ".rf64", ".w64", ".flac", ".aiff", ".aif", ".aifc", ".caf", ".ogg",  ".opus",
+                                 ".au",  ".csv",  ".tsv", ".lvm",  ".uff",  ".unv", ".uf",   ".58",  ".bunv", ".mat"};
     std::vector<std::filesystem::path> out;
     for (const std::filesystem::path& file : files) {
         if (!std::filesystem::is_directory(file)) {
@@ -73,7 +76,7 @@ std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesys
         std::vector<std::filesystem::path> inside;
         for (const auto& entry : std::filesystem::directory_iterator(file))
             if (entry.is_regular_file() &&
-                std::find(endings.begin(), endings.end(), entry.path().extension().string()) != endings.end())
+                std::find(endings.begin(), endings.end(), file::extension_of(entry.path())) != endings.end())
                 inside.push_back(entry.path());
         if (inside.empty()) throw Error(fmt::format("{}: the folder holds no record", file.string()));
         std::sort(inside.begin(), inside.end());

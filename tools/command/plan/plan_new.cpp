@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan new: makes a plan from files.
 #include "assets/bone/labels.hpp"
+#include "assets/file/extension.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
@@ -49,7 +50,7 @@ void add_file_of(plan::CasePlan& plan, std::vector<analysis::CaseFragment>& load
     const std::string name = is_named ? text.substr(0, equals) : "";
     const fs::path file = is_named ? text.substr(equals + 1) : text;
     std::vector<std::pair<std::string, fs::path>> found;
-    if (bone::file_of_bone(file) == file && file.extension() == ".vdb") {
+    if (bone::file_of_bone(file) == file && file::extension_of(file) == ".vdb") {
         const auto bones = bone::load_bones(file);
         if (bones.size() > 1 && is_named)
             throw Error(fmt::format("{}: there are {} bones; choose one, as in {}={}#{}", file.string(), bones.size(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan plate, implant, vessel, site, margin, limits: each changes the reconstruction of a plan by one step; vessel
 // also a plan without one.
+#include "assets/file/extension.hpp"
 #include "assets/reconstruction/flap_files.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
@@ -97,7 +98,7 @@ reconstruction::VesselKind kind_of(const FlapChoice& choice, const std::string& 
     return choice.kind == "vein" ? reconstruction::VesselKind::vein : reconstruction::VesselKind::artery;
 }
 
-bool is_table(const fs::path& file) { return file.extension() == ".csv"; }
+bool is_table(const fs::path& file) { return file::extension_of(file) == ".csv"; }
 
 void print(const std::vector<std::string>& notes) {
     for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
