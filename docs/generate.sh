@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Writes the pages that repeat what the command says, reference/nodes.md, value-types.md and verbs.md:
-# docs/generate.sh [COMMAND [FOLDER]]
+# Writes the pages that repeat what the command says, reference/nodes.md, value-types.md and verbs.md, and the tables of
+# reference/formats.md if the folder has that page: docs/generate.sh [COMMAND [FOLDER]]
 set -euo pipefail
 unset TACTUS_NODES  # nodes of the user are not of these pages
 docs=$(dirname "$(readlink -f "$0")")
@@ -34,3 +34,9 @@ section() {
         for inner in $(verbs_of "$verb"); do section '###' "$verb" "$inner"; done
     done
 } >"$folder/verbs.md"
+
+if [ -f "$folder/formats.md" ]; then
+    conformance=$(dirname "$tactus")/tests/conformance/conformance
+    [ -x "$conformance" ] || { echo "docs/generate.sh: no program $conformance; build it first: ./dev build" >&2; exit 2; }
+    "$conformance" --write "$folder/formats.md"
+fi

@@ -12,13 +12,36 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <stdexcept>
-#include <utility>
 
 namespace tactus::campaign {
 
-std::vector<std::filesystem::path> packed_dicom(const std::filesystem::path& folder) {
+void pack_dicom(const std::filesystem::path& from, const std::filesystem::path& to, const std::string& kind) {
     using gdcm::TransferSyntax;
+    static const std::map<std::string, TransferSyntax::TSType> kinds{{"rle", TransferSyntax::RLELossless},
+                                                                     {"jpeg", TransferSyntax::JPEGLosslessProcess14_1},
+                                                                     {"jpeg_ls", TransferSyntax::JPEGLSLossless},
+                                                                     {"j2k", TransferSyntax::JPEG2000Lossless},
+                                                                     {"j2k_lossy", TransferSyntax::JPEG2000}};
+    const auto fail = [&](const char* what) {
+        throw std::runtime_error(fmt::format("GDCM cannot {} {} as {}", what, from.string(), kind));
+    };
+    gdcm::ImageReader reader;
+    reader.SetFileName(from.c_str());
+    if (!reader.Read()) fail("read");
+    gdcm::ImageChangeTransferSyntax change;
+    change.SetTransferSyntax(kinds.at(kind));
+    change.SetInput(reader.GetImage());
+    if (!change.Change()) fail("compress");
+    gdcm::ImageWriter writer;
+    writer.SetFile(reader.GetFile());
+    writer.SetImage(change.GetOutput());
+    writer.SetFileName(to.c_str());
+    if (!writer.Write()) fail("write");
+}
+
+std::vector<std::filesystem::path> packed_dicom(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
     // GDCM writes beyond its memory when it compresses images of a few samples.
     WrittenVolume v;
@@ -33,27 +56,9 @@ std::vector<std::filesystem::path> packed_dicom(const std::filesystem::path& fol
     file::write_whole_file(folder / "frames.dcm", enhanced_dicom_bytes(v));
     std::vector<std::filesystem::path> made;
     for (const char* const source : {"slice", "frames"})
-        for (const auto& [name, syntax] : {std::pair{"rle", TransferSyntax::RLELossless},
-                                           {"jpeg", TransferSyntax::JPEGLosslessProcess14_1},
-                                           {"jpeg_ls", TransferSyntax::JPEGLSLossless},
-                                           {"j2k", TransferSyntax::JPEG2000Lossless},
-                                           {"j2k_lossy", TransferSyntax::JPEG2000}}) {
-            const auto fail = [&](const char* what) {
-                throw std::runtime_error(fmt::format("GDCM cannot {} {}.dcm as {}", what, source, name));
-            };
-            gdcm::ImageReader reader;
-            reader.SetFileName((folder / fmt::format("{}.dcm", source)).c_str());
-            if (!reader.Read()) fail("read");
-            gdcm::ImageChangeTransferSyntax change;
-            change.SetTransferSyntax(syntax);
-            change.SetInput(reader.GetImage());
-            if (!change.Change()) fail("compress");
-            gdcm::ImageWriter writer;
-            writer.SetFile(reader.GetFile());
-            writer.SetImage(change.GetOutput());
-            made.push_back(folder / fmt::format("{}_{}.dcm", source, name));
-            writer.SetFileName(made.back().c_str());
-            if (!writer.Write()) fail("write");
+        for (const char* const kind : {"rle", "jpeg", "jpeg_ls", "j2k", "j2k_lossy"}) {
+            made.push_back(folder / fmt::format("{}_{}.dcm", source, kind));
+            pack_dicom(folder / fmt::format("{}.dcm", source), made.back(), kind);
         }
     return made;
 }

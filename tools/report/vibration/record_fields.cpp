@@ -25,6 +25,7 @@ const Fields<table::LogForm>& form_fields() {
             .integer("units_line", "", [](const LogForm& f) { return line(f.units_line); })
             .integer("first_row", "", [](const LogForm& f) { return line(f.first_row); })
             .integer("lines_not_used", "", [](const LogForm& f) { return f.skipped; })
+            .integer("statistics_lines", "", [](const LogForm& f) { return f.trailer; })
             .text("time", "", [](const LogForm& f) { return std::string(f.time); })
             .flag("time_unit_stated", "", [](const LogForm& f) { return f.is_time_unit_stated; });
     return all;
