@@ -2,6 +2,7 @@
 #include "assets/plan/plan_file.hpp"
 
 #include "assets/file/json.hpp"
+#include "assets/file/utc_text.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/reconstruction/flap_json.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <set>
 
 namespace tactus::plan {
@@ -322,16 +322,6 @@ void save_case_plan(const CasePlan& plan, const std::filesystem::path& path) {
     file::write_durable_file(path, plan_text(plan));
 }
 
-std::string time_of_day() {
-    using namespace std::chrono;
-    const auto now = system_clock::now();
-    const std::time_t whole = system_clock::to_time_t(now);
-    const auto ms = duration_cast<milliseconds>(now.time_since_epoch()).count() % 1000;
-    std::tm parts{};
-    gmtime_r(&whole, &parts);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-    return fmt::format("{}.{:03}Z", text, ms);
-}
+std::string time_of_day() { return file::utc_text(std::chrono::system_clock::now(), true); }
 
 }  // namespace tactus::plan

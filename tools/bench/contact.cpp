@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cost per point of a pointshell against a voxmap, compared with OpenVDB sampling the same positions.
 #include "assets/file/json.hpp"
+#include "assets/file/part.hpp"
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/contact/pointshell_kernel.hpp"
 #include "dsp/contact/shape.hpp"
@@ -9,6 +10,7 @@
 #include "tools/bench/bench.hpp"
 #include "tools/bench/contact_cases.hpp"
 #include "tools/bench/contact_peer.hpp"
+#include "tools/shell_word.hpp"
 
 #include <fmt/format.h>
 
@@ -106,12 +108,11 @@ Json measure(const Case& c, int rounds) {
 Json contact_libraries(const Case& c, int rounds) {
     Json found = Json::array();
     std::error_code failure;
-    const auto self = std::filesystem::read_symlink("/proc/self/exe", failure);
-    const auto program = self.parent_path() / "bench_contact_libraries";
-    if (failure || !std::filesystem::exists(program, failure)) return found;
+    const auto program = file::this_object().parent_path() / "bench_contact_libraries";
+    if (!std::filesystem::exists(program, failure)) return found;
     const int frames = rounds * std::clamp(250'000 / c.points, 3, 50);
     const std::string command =
-        fmt::format("'{}' {} {} {} {} {}", program.string(), c.name, c.points, c.radius, c.distance, frames);
+        fmt::format("{} {} {} {} {} {}", shell_word(program.string()), c.name, c.points, c.radius, c.distance, frames);
     std::FILE* rows = ::popen(command.c_str(), "r");
     if (!rows) return found;
     char line[512];

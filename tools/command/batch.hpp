@@ -2,6 +2,8 @@
 // Runs a job for each of many items in parallel, with a progress bar; failures do not stop the others.
 #pragma once
 
+#include "assets/table/csv_field.hpp"
+
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -22,7 +24,6 @@ std::size_t tell_failures(const std::vector<std::string>& failures);
 /// "[####    ] 3 of 8 files"
 std::string progress_bar(std::size_t finished, std::size_t count, std::string_view what);
 
-/// A field of a CSV file, quoted when necessary.
-std::string csv_field(const std::string& text);
+using table::csv_field;
 
 }  // namespace tactus::command

@@ -4,13 +4,12 @@
 #include "dsp/contact/pointshell_kernel.hpp"
 #include "dsp/core/hash.hpp"
 #include "engine/take/take_writer.hpp"
+#include "tools/analysis/sweep/sweep_folder.hpp"
 
 #include <fmt/format.h>
 
 #include <gnu/libc-version.h>
-#include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <fstream>
 
@@ -35,15 +34,13 @@ std::string processor_features() {
 }  // namespace
 
 Json worker_description(const std::string& version, const std::string& runner, int jobs) {
-    std::array<char, 256> host{};
-    ::gethostname(host.data(), host.size() - 1);
     return {{"version", version},
             {"build", take::build_identity()},
             {"libc", ::gnu_get_libc_version()},
             {"vector", std::string(contact::kernel::variant_in_use())},
             {"features", processor_features()},
             {"cpu", take::cpu_family()},
-            {"machine", std::string(host.data())},
+            {"machine", host_name()},
             {"runner", runner},
             {"jobs", jobs},
             {"started", std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count()}};

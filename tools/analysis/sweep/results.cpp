@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/sweep/results.hpp"
 
+#include "assets/file/utc_text.hpp"
+#include "assets/table/csv_field.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 #include "tools/analysis/sweep/provenance.hpp"
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -106,11 +109,8 @@ public:
 
 private:
     static std::string time_text(double seconds) {
-        const auto time = static_cast<std::time_t>(std::clamp(seconds, 0.0, 4e9));
-        std::tm parts{};
-        ::gmtime_r(&time, &parts);
-        return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
-                           parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+        const std::chrono::seconds since_1970(static_cast<std::int64_t>(std::clamp(seconds, 0.0, 4e9)));
+        return file::utc_text(std::chrono::system_clock::time_point(since_1970));
     }
 
     const Results& results_;
@@ -119,17 +119,10 @@ private:
 
 constexpr const char* worker_keys[] = {"version", "build", "libc", "vector", "features", "cpu", "machine", "runner"};
 
-std::string csv_word(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + "\"";
-}
-
 std::string csv_text(const Cell& cell) {
     if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
     if (const auto* whole = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *whole);
-    if (const auto* text = std::get_if<std::string>(&cell)) return csv_word(*text);
+    if (const auto* text = std::get_if<std::string>(&cell)) return table::csv_field(*text);
     return {};
 }
 
@@ -345,16 +338,16 @@ void Results::write_csv(const fs::path& path) const {
     const Table table(*this);
     std::string line;
     for (const Column& column : table.columns)
-        line += (line.empty() ? "" : ",") + csv_word(column.unit.empty() || column.name == "peak_mb"
-                                                         ? column.name
-                                                         : fmt::format("{} [{}]", column.name, column.unit));
+        line += (line.empty() ? "" : ",") + table::csv_field(column.unit.empty() || column.name == "peak_mb"
+                                                                 ? column.name
+                                                                 : fmt::format("{} [{}]", column.name, column.unit));
     for (const char* key : worker_keys) line += fmt::format(",{}", key);
     line += '\n';
     std::fputs(line.c_str(), stream.get());
     std::vector<std::string> ends;
     for (const Json& worker : workers_) {
         ends.emplace_back();
-        for (const char* key : worker_keys) ends.back() += "," + csv_word(worker.value(key, std::string()));
+        for (const char* key : worker_keys) ends.back() += "," + table::csv_field(worker.value(key, std::string()));
         ends.back() += '\n';
     }
     std::vector<Cell> cells;

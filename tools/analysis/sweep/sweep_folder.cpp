@@ -153,11 +153,15 @@ fs::path SweepFolder::files_of(std::uint64_t id) const {
     return path_ / "files" / name.substr(0, 2) / name;
 }
 
-std::string process_name() {
+std::string host_name() {
     std::array<char, 256> host{};
     ::gethostname(host.data(), host.size() - 1);
+    return host.data();
+}
+
+std::string process_name() {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return fmt::format("{}-{}-{:x}", host.data(), ::getpid(),
+    return fmt::format("{}-{}-{:x}", host_name(), ::getpid(),
                        std::chrono::duration_cast<std::chrono::microseconds>(now).count());
 }
 

@@ -53,6 +53,8 @@ std::uint64_t hash_of_input(const std::filesystem::path& path);
 
 /// Writes under a name that no other process uses and renames the file into place. Throws Error.
 void write_renamed(const std::filesystem::path& path, std::string_view bytes);
+/// Of this machine.
+std::string host_name();
 /// "HOST-PID-TIME": unique among the processes that share a file system.
 std::string process_name();
 

@@ -2,6 +2,7 @@
 // Whether a window makes a run late: rounds of three runs, two without a window and one with, in turning order. What the
 // two equal runs of all rounds differ by is the spread of the machine, which a window must not exceed.
 #include "assets/file/json.hpp"
+#include "assets/file/part.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/window/quantile.hpp"
@@ -43,7 +44,7 @@ struct Lateness {
 };
 
 fs::path own_command() {
-    const fs::path command = fs::read_symlink("/proc/self/exe").parent_path() / "tactus";
+    const fs::path command = file::this_object().parent_path() / "tactus";
     if (!fs::exists(command))
         throw Error(fmt::format("{} is missing: build it, or install it beside tactus-bench", command.string()));
     return command;

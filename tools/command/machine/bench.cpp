@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus bench: runs the program tactus-bench.
+#include "assets/file/part.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 
@@ -18,10 +19,8 @@ namespace {
 
 /// Replaces the process; throws Error on failure.
 int run_tactus_bench(const std::vector<std::string>& arguments) {
-    std::error_code failure;
-    const auto self = std::filesystem::read_symlink("/proc/self/exe", failure);
-    const std::filesystem::path program = self.parent_path() / "tactus-bench";
-    if (failure || !std::filesystem::exists(program))
+    const std::filesystem::path program = file::this_object().parent_path() / "tactus-bench";
+    if (!std::filesystem::exists(program))
         throw Error(
             fmt::format("the benchmarks are in a separate program, {}, which does not exist; build it with "
                         "'cmake --build BUILD_FOLDER --target tactus-bench', or install it beside tactus",

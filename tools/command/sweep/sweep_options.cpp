@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/sweep/sweep_options.hpp"
 
-#include "dsp/core/error.hpp"
+#include "assets/file/part.hpp"
 #include "tools/command/catalogue.hpp"
 #include "tools/counted.hpp"
 #include "tools/run/stop_signals.hpp"
+#include "tools/shell_word.hpp"
 
 #include <fmt/format.h>
 
 namespace tactus::command {
-
-std::filesystem::path this_program() {
-    std::error_code failure;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", failure);
-    if (failure) throw Error(fmt::format("/proc/self/exe: cannot be read: {}", failure.message()));
-    return program;
-}
 
 int run_verb_here(const std::vector<std::string>& words) {
     std::vector<std::string> all{"tactus"};
@@ -30,7 +24,7 @@ analysis::LocalRun local_run(int jobs, const std::string& runner) {
     run.jobs = jobs;
     run.runner = runner;
     run.version = version_text("tactus");
-    run.program = this_program();
+    run.program = file::this_object();
     run.run_verb = run_verb_here;
     run.stop = &run::stop_on_signals();
     return run;
@@ -79,15 +73,7 @@ std::string point_text(const analysis::SweepFolder& folder, std::size_t index) {
     std::string text = sweep.steps.front().is_own ? "tactus" : "";
     for (const std::string& word : sweep::words_of(sweep, sweep.steps.front(), folder.tasks().point(index),
                                                    folder.tasks().id(index), "OUT", "tactus")) {
-        const bool is_plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[](){}<>|&;#~!") == std::string::npos;
-        text += text.empty() ? "" : " ";
-        if (is_plain) {
-            text += word;
-            continue;
-        }
-        text += '\'';
-        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        text += '\'';
+        text += (text.empty() ? "" : " ") + short_shell_word(word);
     }
     return text;
 }

@@ -5,13 +5,9 @@
 #include "tools/analysis/sweep/local_runner.hpp"
 #include "tools/analysis/sweep/results.hpp"
 
-#include <filesystem>
 #include <string>
 
 namespace tactus::command {
-
-/// This program.
-std::filesystem::path this_program();
 
 /// Runs a verb within this process: what a resident worker does.
 int run_verb_here(const std::vector<std::string>& words);

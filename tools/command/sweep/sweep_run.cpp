@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus sweep run: prepares the folder of a sweep and runs it, here or on an engine.
 #include "assets/file/json.hpp"
+#include "assets/file/part.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/sweep/schedulers.hpp"
 #include "tools/command/options.hpp"
@@ -63,7 +64,7 @@ int run_here(const analysis::SweepFolder& folder, const SweepRunChoice& choice) 
 
 int run_on_slurm(const analysis::SweepFolder& folder, const SweepRunChoice& choice) {
     const analysis::SubmittedJob job = analysis::submit_to_slurm(
-        folder, {static_cast<std::size_t>(choice.chunk), std::max(choice.jobs, 1), choice.sbatch, this_program()});
+        folder, {static_cast<std::size_t>(choice.chunk), std::max(choice.jobs, 1), choice.sbatch, file::this_object()});
     if (job.id.empty()) return finish(folder, false, choice.json);
     if (!choice.json)
         say(stdout, fmt::format("job {}: {} of {}; 'scancel {}' ends it, and the same command continues\n", job.id,
@@ -116,7 +117,7 @@ int sweep_run(const SweepRunChoice& choice) {
     if (choice.runner == "local") return run_here(folder, choice);
     const std::size_t shares =
         analysis::write_makefile(folder, choice.chunk > 0 ? static_cast<std::size_t>(choice.chunk) : 100,
-                                 std::max(choice.jobs, 1), this_program());
+                                 std::max(choice.jobs, 1), file::this_object());
     say(stdout, fmt::format("{} with {}; run 'make -j 8 -k -C {}', then 'tactus sweep status {}'\n",
                             (folder.path() / "Makefile").string(), counted(shares, "target"), folder.path().string(),
                             folder.path().string()));

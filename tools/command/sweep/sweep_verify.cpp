@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus sweep verify: runs a sample of the points again and compares.
+#include "assets/file/part.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/sweep/provenance.hpp"
 #include "tools/analysis/sweep/verify.hpp"
@@ -44,7 +45,7 @@ int sweep_verify(const SweepVerifyChoice& choice) {
     if (points.empty()) throw Error(fmt::format("{}: no point is finished yet", folder.path().string()));
     LiveLine line;
     const analysis::Verification found = analysis::verify_points(
-        results, points, analysis::worker_description(version_text("tactus"), "verify", 1), this_program(),
+        results, points, analysis::worker_description(version_text("tactus"), "verify", 1), file::this_object(),
         run::stop_on_signals(),
         [&](std::size_t n) { line.show(fmt::format("{} of {}", n, counted(points.size(), "point"))); });
     line.clear();
