@@ -397,53 +397,21 @@ private:
             figure.kind =
                 toml_.choice(*node, {"heat", "lines"}) == "heat" ? FigureChoice::Kind::heat : FigureChoice::Kind::lines;
         if (const auto* node = table.get("unit")) figure.unit = toml_.line(*node);
-        const auto value = [&](const toml::node& node) {
-            const std::string word = toml_.word(node);
-            const std::vector<std::string> known = sweep_.value_names();
-            if (std::ranges::find(known, word) == known.end())
-                toml_.fail(node, fmt::format("no step has a value '{}'{}", word, did_you_mean(word, known)));
-            return word;
+        const auto columns = [&](const toml::node& node) {
+            return node.is_array() ? toml_.words(node, 1, 24) : std::vector<std::string>{toml_.word(node)};
         };
-        const auto axis = [&](const toml::node& node) {
-            const std::string word = toml_.word(node);
-            std::vector<std::string> known;
-            for (const Axis& one : sweep_.axes) known.push_back(one.name);
-            if (std::ranges::find(known, word) == known.end())
-                toml_.fail(node, fmt::format("there is no axis '{}'{}", word, did_you_mean(word, known)));
-            return word;
-        };
-        figure.value = value(toml_.need(table, "value", "value = \"success\""));
-        if (const auto* node = table.get("minus")) figure.minus = value(*node);
-        if (const auto* node = table.get("unless")) figure.unless = value(*node);
-        figure.x = axis(toml_.need(table, "x", "x = \"stiffness\""));
-        if (const auto* node = table.get("y")) figure.y = axis(*node);
-        if (const auto* node = table.get("series")) figure.series = axis(*node);
-        if (const auto* node = table.get("panel")) figure.panel = axis(*node);
-        if (const auto* node = table.get("statistic")) {
-            const std::string word = toml_.choice(*node, {"mean", "median", "fraction"});
-            figure.statistic = word == "mean"     ? FigureChoice::Statistic::mean
-                               : word == "median" ? FigureChoice::Statistic::median
-                                                  : FigureChoice::Statistic::fraction;
-        }
+        figure.values = columns(toml_.need(table, "value", "value = \"success\""));
+        if (const auto* node = table.get("minus")) figure.minus = columns(*node);
+        if (const auto* node = table.get("unless")) figure.unless = toml_.word(*node);
+        figure.x = toml_.word(toml_.need(table, "x", "x = \"stiffness\""));
+        if (const auto* node = table.get("y")) figure.y = toml_.word(*node);
+        if (const auto* node = table.get("series")) figure.series = toml_.word(*node);
+        if (const auto* node = table.get("panel")) figure.panel = toml_.word(*node);
+        if (const auto* node = table.get("statistic"))
+            figure.statistic = statistic_of(toml_.choice(*node, statistic_names()));
         if (const auto* node = table.get("log")) figure.is_log = toml_.flag(*node);
-        if (const std::string problem = figure_problem(figure); !problem.empty()) toml_.fail(table, problem);
+        if (const std::string problem = figure_problem(sweep_, figure); !problem.empty()) toml_.fail(table, problem);
         sweep_.figures.push_back(std::move(figure));
-    }
-
-    static std::string figure_problem(const FigureChoice& figure) {
-        const bool is_heat = figure.kind == FigureChoice::Kind::heat;
-        if (is_heat == figure.y.empty()) return is_heat ? "a heat map needs 'y'" : "'y' belongs to a heat map";
-        if (is_heat && !figure.series.empty()) return "'series' belongs to lines";
-        std::vector<std::string> axes;
-        for (const std::string& name : {figure.x, figure.y, figure.series, figure.panel})
-            if (!name.empty()) axes.push_back(name);
-        std::ranges::sort(axes);
-        if (std::ranges::adjacent_find(axes) != axes.end()) return "a figure uses each axis once";
-        if (!figure.minus.empty() && figure.statistic == FigureChoice::Statistic::fraction)
-            return "a difference has no fraction; use statistic = \"mean\"";
-        if (figure.is_log && (figure.statistic == FigureChoice::Statistic::fraction || !figure.minus.empty()))
-            return "fractions and differences have no logarithmic axis";
-        return {};
     }
 
     experiment::TomlValues toml_;
@@ -478,6 +446,64 @@ std::vector<std::string> Sweep::value_names() const {
     for (const Step& step : steps)
         for (const KeptValue& value : step.values) names.push_back(value.name);
     return names;
+}
+
+namespace {
+
+constexpr std::pair<std::string_view, FigureChoice::Statistic> statistics[] = {
+    {"mean", FigureChoice::Statistic::mean},
+    {"median", FigureChoice::Statistic::median},
+    {"fraction", FigureChoice::Statistic::fraction}};
+
+}  // namespace
+
+std::string_view name_of(FigureChoice::Statistic statistic) {
+    return std::ranges::find(statistics, statistic, [](const auto& one) { return one.second; })->first;
+}
+
+std::vector<std::string> statistic_names() {
+    std::vector<std::string> names;
+    for (const auto& [name, statistic] : statistics) names.emplace_back(name);
+    return names;
+}
+
+FigureChoice::Statistic statistic_of(std::string_view name) {
+    const auto found = std::ranges::find(statistics, name, [](const auto& one) { return one.first; });
+    if (found == std::end(statistics)) throw Error(fmt::format("there is no statistic '{}'", name));
+    return found->second;
+}
+
+std::string figure_problem(const Sweep& sweep, const FigureChoice& figure) {
+    const std::vector<std::string> known = sweep.value_names();
+    std::vector<std::string> columns = figure.values;
+    columns.insert(columns.end(), figure.minus.begin(), figure.minus.end());
+    if (!figure.unless.empty()) columns.push_back(figure.unless);
+    for (const std::string& name : columns)
+        if (std::ranges::find(known, name) == known.end())
+            return fmt::format("no step has a value '{}'{}", name, did_you_mean(name, known));
+    std::vector<std::string> axes, used;
+    for (const Axis& axis : sweep.axes) axes.push_back(axis.name);
+    for (const std::string& name : {figure.x, figure.y, figure.series, figure.panel}) {
+        if (name.empty()) continue;
+        if (std::ranges::find(axes, name) == axes.end())
+            return fmt::format("there is no axis '{}'{}", name, did_you_mean(name, axes));
+        if (std::ranges::find(used, name) != used.end()) return "a figure uses each axis once";
+        used.push_back(name);
+    }
+    const bool is_heat = figure.kind == FigureChoice::Kind::heat;
+    if (is_heat == figure.y.empty()) return is_heat ? "a heat map needs 'y'" : "'y' belongs to a heat map";
+    if (is_heat && !figure.series.empty()) return "'series' belongs to lines";
+    if (is_heat && figure.values.size() > 1) return "a heat map shows one value";
+    if (figure.values.size() > 1 && !figure.series.empty())
+        return "several values are a line each; leave out 'series', or use 'panel'";
+    if (!figure.minus.empty() && figure.minus.size() != figure.values.size())
+        return fmt::format("'minus' needs a column for each value: {} of {}", figure.minus.size(),
+                           figure.values.size());
+    if (!figure.minus.empty() && figure.statistic == FigureChoice::Statistic::fraction)
+        return "a difference has no fraction; use the mean";
+    if (figure.is_log && (figure.statistic == FigureChoice::Statistic::fraction || !figure.minus.empty()))
+        return "fractions and differences have no logarithmic axis";
+    return {};
 }
 
 Sweep load_sweep(const fs::path& path, const fs::path& folder, const fs::path& library) {

@@ -69,8 +69,10 @@ struct Seeds {
 /// A figure over the results. All axes that it does not name are averaged over.
 struct FigureChoice {
     enum class Kind : std::uint8_t { heat, lines } kind = Kind::lines;
-    std::string name, title, value, unit;
-    std::string minus;  ///< column of the same row that is subtracted: a paired difference
+    std::string name, title, unit;
+    std::vector<std::string> values;  ///< columns; of several, each is a line
+    std::vector<std::string>
+        minus;  ///< columns of the same row that are subtracted, one for each value: paired differences
     std::string x, y;  ///< axes; y: heat only
     std::string series, panel;  ///< axes: a line, and a panel, for each level
     std::string unless;  ///< column: rows where it is not 0 or false are left out
@@ -78,6 +80,13 @@ struct FigureChoice {
     enum class Statistic : std::uint8_t { mean, median, fraction } statistic = Statistic::mean;
     bool is_log = false;  ///< of the values
 };
+
+/// "mean", "median", "fraction".
+std::string_view name_of(FigureChoice::Statistic statistic);
+/// Those three, for an option's choices.
+std::vector<std::string> statistic_names();
+/// Throws Error for other names.
+FigureChoice::Statistic statistic_of(std::string_view name);
 
 struct Sweep {
     std::filesystem::path file;
@@ -95,6 +104,9 @@ struct Sweep {
     /// Columns of values, over all steps.
     std::vector<std::string> value_names() const;
 };
+
+/// Why the sweep cannot have this figure: a column or axis that it lacks, or keys that exclude each other. Empty: it can.
+std::string figure_problem(const Sweep& sweep, const FigureChoice& figure);
 
 /// Reads and checks. `folder`: relative names are below it (empty: the folder of the file). `library`: replaces
 /// "library:" at the begin of the name of an input. Axes of files are listed, but their contents are not read. Throws

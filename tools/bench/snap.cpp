@@ -33,7 +33,7 @@ struct SnapBenchChoice {
     int seeds = 8, trials = 1;
     std::vector<std::string> cases, methods;
     std::optional<double> chips;  ///< percent of the fracture's surface
-    std::string start;
+    std::vector<std::string> starts;
     std::filesystem::path bone;
     bool pushed = false, json = false;
 };
@@ -218,13 +218,14 @@ std::vector<FractureCase> chosen_cases(const std::vector<std::string>& names) {
 
 int bench_snap(const SnapBenchChoice& choice) {
     std::vector<FractureCase> cases = chosen_cases(choice.cases);
-    const bool is_own = choice.chips || !choice.start.empty();
+    const bool is_own = choice.chips || !choice.starts.empty();
     if (is_own) {
         if (!choice.cases.empty()) throw Error("--chips and --start make a case of their own; leave out --case");
         FractureCase own = fracture_cases().front();
         own.kind.name = "own";
         if (choice.chips) own.kind.chips = 0.01 * *choice.chips;
-        if (!choice.start.empty()) own.starts = {parse_start(choice.start)};
+        if (!choice.starts.empty()) own.starts.clear();
+        for (const std::string& start : choice.starts) own.starts.push_back(parse_start(start));
         cases = {own};
     }
     const bool live = (choice.cases.empty() && !is_own) || std::ranges::count(choice.cases, live_case) > 0;
@@ -283,7 +284,8 @@ Verb snap_verb() {
                 verb.add("--chips", choice->chips,
                          "a case of its own: clean, with this percentage of the fracture's surface missing")
                     .range(0.0, 60.0);
-                verb.add("--start", choice->start, "a case of its own: its only start, as in '8 mm 20 deg'");
+                verb.add("--start", choice->starts, "a case of its own: its starts, as in '4 mm 12 deg,8 mm 20 deg'")
+                    .separated_by(',');
                 verb.add("--method", choice->methods,
                          "extended, global, baseline, icp_point, icp_plane, gicp (default: all)")
                     .separated_by(',')

@@ -31,54 +31,54 @@ std::optional<double> number_of(const sweep::Row& row, const std::string& name) 
     return value->get<double>();
 }
 
-/// Distribution-free interval of a median: the widest pair of order statistics that leaves at most 2.5 % on each side.
-std::pair<double, double> median_interval(const std::vector<double>& sorted) {
-    const std::size_t n = sorted.size();
-    // P(at most k of n below the median), binomial with p = 1/2.
-    double probability = std::exp2(-static_cast<double>(n)), sum = 0.0;
-    std::size_t k = 0;
-    for (; k < n / 2; ++k) {
-        if (sum + probability > 0.025) break;
-        sum += probability;
-        probability *= static_cast<double>(n - k) / static_cast<double>(k + 1);
-    }
-    if (n > 1000) {
-        // The power above underflows; the normal approximation is exact to a rank here.
-        const double half = 0.5 * static_cast<double>(n) - 0.98 * std::sqrt(static_cast<double>(n));
-        k = static_cast<std::size_t>(std::max(1.0, std::floor(half)));
-    }
-    const std::size_t low = k > 0 ? k - 1 : 0;
-    return {sorted[low], sorted[n - 1 - low]};
-}
-
 void summarise(FigureCell& cell, std::vector<double>& values, FigureChoice::Statistic statistic) {
     cell.count = values.size();
     const double n = static_cast<double>(values.size());
     if (statistic == FigureChoice::Statistic::fraction) {
         const auto hits = static_cast<std::size_t>(std::ranges::count_if(values, [](double v) { return v != 0.0; }));
         cell.value = static_cast<double>(hits) / n;
-        std::tie(cell.low, cell.high) = statistics::wilson_interval(hits, values.size());
+        cell.interval = statistics::wilson_interval(hits, values.size());
         return;
     }
     if (statistic == FigureChoice::Statistic::median) {
         std::ranges::sort(values);
         const std::size_t middle = values.size() / 2;
         cell.value = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-        std::tie(cell.low, cell.high) = median_interval(values);
+        cell.interval = median_interval(values);
         return;
     }
     const statistics::Moments moments = statistics::moments(values);
-    cell.value = cell.low = cell.high = moments.mean;
+    cell.value = moments.mean;
     if (values.size() < 2) return;
     const double half = statistics::student_quantile(0.975, n - 1.0) * moments.deviation / std::sqrt(n);
-    cell.low -= half;
-    cell.high += half;
+    cell.interval = {moments.mean - half, moments.mean + half};
 }
 
 }  // namespace
 
+std::optional<std::pair<double, double>> median_interval(const std::vector<double>& sorted) {
+    const std::size_t n = sorted.size();
+    // Number of values that may be left out on each side: P(at most so many are below the median) ≤ 2.5 %, binomial with
+    // p = 1/2.
+    std::size_t outside = 0;
+    if (n > 1000) {
+        // The powers below underflow; the normal approximation is exact to a rank here.
+        const auto count = static_cast<double>(n);
+        outside = static_cast<std::size_t>(0.5 * count - 0.98 * std::sqrt(count));
+    } else {
+        double probability = std::exp2(-static_cast<double>(n)), sum = 0.0;
+        for (; sum + probability <= 0.025; ++outside) {
+            sum += probability;
+            probability *= static_cast<double>(n - outside) / static_cast<double>(outside + 1);
+        }
+    }
+    if (outside == 0) return {};
+    return std::pair(sorted[outside - 1], sorted[n - outside]);
+}
+
 FigureData figure_data(const Results& results, const FigureChoice& choice) {
     const sweep::Sweep& sweep = results.folder().sweep();
+    if (const std::string problem = sweep::figure_problem(sweep, choice); !problem.empty()) throw Error(problem);
     FigureData data;
     data.choice = choice;
     const std::array<std::pair<const std::string*, const sweep::Axis**>, 4> named{
@@ -87,7 +87,6 @@ FigureData figure_data(const Results& results, const FigureChoice& choice) {
     for (std::size_t i = 0; i < named.size(); ++i) {
         if (named[i].first->empty()) continue;
         const sweep::Axis* axis = sweep.find_axis(*named[i].first);
-        if (!axis) throw Error(fmt::format("the sweep has no axis '{}'", *named[i].first));
         const std::size_t max_levels = i < 2 ? 24 : 10'000;
         if (axis->kind == sweep::Axis::Kind::design)
             throw Error(
@@ -100,32 +99,38 @@ FigureData figure_data(const Results& results, const FigureChoice& choice) {
         *named[i].second = axis;
         places[i] = static_cast<std::size_t>(axis - sweep.axes.data());
     }
-    std::map<std::array<std::size_t, 4>, std::vector<double>> groups;
+    using Key = std::array<std::size_t, 5>;  // panel, series, column, y, x
+    constexpr std::array<std::size_t, 4> at_key{0, 1, 3, 4};
+    std::map<Key, std::vector<double>> groups;
     for (std::size_t index = 0; index < results.size(); ++index) {
         if (results.state(index) != Results::State::done) continue;
         const sweep::Row row = results.row(index);
-        std::optional<double> value = number_of(row, choice.value);
-        if (!choice.minus.empty()) {
-            const std::optional<double> minus = number_of(row, choice.minus);
-            value = value && minus ? std::optional(*value - *minus) : std::nullopt;
-        }
-        if (!choice.unless.empty() && number_of(row, choice.unless).value_or(0.0) != 0.0) value.reset();
-        if (!value || !std::isfinite(*value)) {
-            ++data.left_out;
-            continue;
-        }
+        const bool is_excluded = !choice.unless.empty() && number_of(row, choice.unless).value_or(0.0) != 0.0;
         const sweep::Point point = results.folder().tasks().point(index);
-        std::array<std::size_t, 4> key{};
-        for (std::size_t i = 0; i < key.size(); ++i)
-            if (places[i]) key[i] = point.levels[*places[i]];
-        groups[key].push_back(*value);
+        Key key{};
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (places[i]) key[at_key[i]] = point.levels[*places[i]];
+        for (std::size_t column = 0; column < choice.values.size(); ++column) {
+            std::optional<double> value = number_of(row, choice.values[column]);
+            if (!choice.minus.empty()) {
+                const std::optional<double> minus = number_of(row, choice.minus[column]);
+                value = value && minus ? std::optional(*value - *minus) : std::nullopt;
+            }
+            if (is_excluded || !value || !std::isfinite(*value)) {
+                ++data.left_out;
+                continue;
+            }
+            key[2] = column;
+            groups[key].push_back(*value);
+        }
     }
     for (auto& [key, values] : groups) {
         FigureCell cell;
         cell.panel = key[0];
         cell.series = key[1];
-        cell.y = key[2];
-        cell.x = key[3];
+        cell.column = key[2];
+        cell.y = key[3];
+        cell.x = key[4];
         summarise(cell, values, choice.statistic);
         data.cells.push_back(cell);
     }

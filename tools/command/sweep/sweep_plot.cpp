@@ -26,7 +26,7 @@ struct SweepPlotChoice {
 };
 
 sweep::FigureChoice figure_of(const SweepPlotChoice& choice, const sweep::Sweep& sweep) {
-    if (choice.own.value.empty()) {
+    if (choice.own.values.empty()) {
         std::vector<std::string> names;
         for (const sweep::FigureChoice& figure : sweep.figures) names.push_back(figure.name);
         if (names.empty())
@@ -41,14 +41,8 @@ sweep::FigureChoice figure_of(const SweepPlotChoice& choice, const sweep::Sweep&
     }
     sweep::FigureChoice figure = choice.own;
     if (figure.x.empty()) throw Error("--value needs --x AXIS");
-    const std::vector<std::string> values = sweep.value_names();
-    for (const std::string& name : {figure.value, figure.minus})
-        if (!name.empty() && std::ranges::find(values, name) == values.end())
-            throw Error(fmt::format("the sweep has no value '{}'{}", name, did_you_mean(name, values)));
     figure.kind = figure.y.empty() ? sweep::FigureChoice::Kind::lines : sweep::FigureChoice::Kind::heat;
-    figure.statistic = choice.statistic == "mean"     ? sweep::FigureChoice::Statistic::mean
-                       : choice.statistic == "median" ? sweep::FigureChoice::Statistic::median
-                                                      : sweep::FigureChoice::Statistic::fraction;
+    figure.statistic = sweep::statistic_of(choice.statistic);
     return figure;
 }
 
@@ -70,9 +64,13 @@ Action declare_sweep_plot(VerbOptions& verb) {
     verb.add("-o,--out", choice->out, "figure, .svg, .png or .pdf").required();
     add_figure_options(verb, choice->picture);
     const Option figure = verb.add("--figure", choice->figure, "figure of the sweep file; default: its first");
-    Option value = verb.add("--value", choice->own.value, "column of the results, for a figure of its own");
-    value.excludes(figure);
-    verb.add("--minus", choice->own.minus, "column that is subtracted within each row").needs(value);
+    Option value =
+        verb.add("--value", choice->own.values,
+                 "column of the results, for a figure of its own; several, separated by ',', are a line each");
+    value.separated_by(',').excludes(figure);
+    verb.add("--minus", choice->own.minus, "column that is subtracted within each row; one for each value")
+        .separated_by(',')
+        .needs(value);
     verb.add("--x", choice->own.x, "axis across").needs(value);
     verb.add("--y", choice->own.y, "axis upwards: a heat map").needs(value);
     verb.add("--series", choice->own.series, "axis with a line for each level").needs(value);
@@ -80,11 +78,11 @@ Action declare_sweep_plot(VerbOptions& verb) {
     verb.add("--statistic", choice->statistic,
              "over all other axes and seeds: mean (t interval), median (order statistics) or fraction of values that "
              "are not 0 (Wilson interval)")
-        .one_of({"mean", "median", "fraction"})
+        .one_of(sweep::statistic_names())
         .needs(value)
         .shows_default();
     verb.add("--unit", choice->own.unit, "of the column, for the axis").needs(value);
-    verb.flag("--log", choice->own.is_log, "logarithmic axis or colours of the values");
+    verb.flag("--log", choice->own.is_log, "logarithmic axis or colours of the values").needs(value);
     return [choice] { return sweep_plot(*choice); };
 }
 

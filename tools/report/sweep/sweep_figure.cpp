@@ -2,6 +2,7 @@
 #include "tools/report/sweep/sweep_figure.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/counted.hpp"
 #include "tools/report/figures/axes.hpp"
 #include "tools/report/figures/heat.hpp"
 
@@ -42,9 +43,16 @@ std::string level_text(const sweep::Axis& axis, std::size_t level) {
 }
 
 std::string value_title(const FigureChoice& choice) {
-    std::string text = choice.minus.empty() ? choice.value : fmt::format("{} − {}", choice.value, choice.minus);
-    if (choice.statistic == FigureChoice::Statistic::fraction) text = "fraction: " + text;
-    if (choice.statistic == FigureChoice::Statistic::median) text = "median " + text;
+    const bool is_mean = choice.statistic == FigureChoice::Statistic::mean;
+    std::string text(is_mean ? "" : sweep::name_of(choice.statistic));
+    if (choice.values.size() > 1)
+        text = choice.minus.empty() ? std::string(sweep::name_of(choice.statistic)) : "difference";
+    else {
+        const std::string name = choice.minus.empty()
+                                     ? choice.values.front()
+                                     : fmt::format("{} − {}", choice.values.front(), choice.minus.front());
+        text = is_mean ? name : fmt::format("{}: {}", text, name);
+    }
     return choice.unit.empty() ? text : fmt::format("{}, {}", text, choice.unit);
 }
 
@@ -66,9 +74,11 @@ std::string note(const FigureData& data) {
         most = std::max(most, cell.count);
     }
     std::string text = least == most ? fmt::format("n = {}", least) : fmt::format("n = {} to {}", least, most);
-    if (data.choice.kind == FigureChoice::Kind::lines && most > 1) text += fmt::format("; bars: 95 % ({})", interval);
+    const bool has_bars =
+        std::ranges::any_of(data.cells, [](const FigureCell& cell) { return cell.interval.has_value(); });
+    if (data.choice.kind == FigureChoice::Kind::lines && has_bars) text += fmt::format("; bars: 95 % ({})", interval);
     if (!data.choice.minus.empty()) text += "; differences are paired";
-    if (data.left_out > 0) text += fmt::format("; {} rows left out", data.left_out);
+    if (data.left_out > 0) text += fmt::format("; {} left out", counted(data.left_out, "value"));
     return text;
 }
 
@@ -112,7 +122,8 @@ Scale value_scale(const FigureData& data) {
     if (data.choice.statistic == FigureChoice::Statistic::fraction) return {0.0, 1.0, false, 0.25};
     Range range;
     for (const FigureCell& cell : data.cells)
-        for (const double v : {cell.value, cell.low, cell.high})
+        for (const double v : {cell.value, cell.interval ? cell.interval->first : cell.value,
+                               cell.interval ? cell.interval->second : cell.value})
             if (!data.choice.is_log || v > 0.0) range.add(v);
     if (data.choice.is_log) {
         if (range.low > range.high) throw Error("a logarithmic figure needs values above 0");
@@ -143,10 +154,10 @@ struct Layout {
 Figure draw_lines(const FigureData& data) {
     const Layout layout{data.panel ? data.panel->levels.size() : 1,
                         std::min<std::size_t>(3, data.panel ? data.panel->levels.size() : 1), 260.0, line_height};
-    Figure figure = layout.figure(data.series ? legend_width : 0.0);
+    const std::size_t lines = data.line_count();
+    Figure figure = layout.figure(lines > 1 || data.series ? legend_width : 0.0);
     const Positions across(*data.x);
     const Scale up = value_scale(data);
-    const std::size_t lines = data.series ? data.series->levels.size() : 1;
     for (std::size_t p = 0; p < layout.panels; ++p) {
         const FigurePoint corner = layout.corner(p);
         const Axes axes{figure, corner.x, corner.y, layout.width, layout.height, across.scale, up};
@@ -170,17 +181,17 @@ Figure draw_lines(const FigureData& data) {
             const Colour colour = curve_colours[s % curve_colours.size()];
             std::vector<FigurePoint> curve;
             for (const FigureCell& cell : data.cells) {
-                if (cell.panel != p || cell.series != s || (up.is_log && cell.value <= 0.0)) continue;
+                if (cell.panel != p || FigureData::line_of(cell) != s || (up.is_log && cell.value <= 0.0)) continue;
                 const double x = across.at[cell.x];
-                FigurePoint at = axes.at(x, cell.value),
-                            low = axes.at(x, up.is_log ? std::max(cell.low, up.low) : cell.low),
-                            high = axes.at(x, cell.high);
+                const auto [from, to] = cell.interval.value_or(std::pair(cell.value, cell.value));
+                FigurePoint at = axes.at(x, cell.value), low = axes.at(x, up.is_log ? std::max(from, up.low) : from),
+                            high = axes.at(x, to);
                 // Beside each other, so that equal values of two lines are both seen.
                 const double aside = 4.0 * (static_cast<double>(s) - 0.5 * static_cast<double>(lines - 1));
                 for (FigurePoint* point : {&at, &low, &high}) point->x += aside;
                 curve.push_back(at);
                 figure.rectangle(at.x - 2.5, at.y - 2.5, 5.0, 5.0, colour);
-                if (cell.count < 2) continue;
+                if (!cell.interval) continue;
                 figure.line({low, high}, colour, 1.2);
                 for (const FigurePoint end : {low, high})
                     figure.line({{end.x - 3.0, end.y}, {end.x + 3.0, end.y}}, colour, 1.2);
@@ -188,12 +199,13 @@ Figure draw_lines(const FigureData& data) {
             if (curve.size() > 1) figure.line(curve, colour, 1.5, 3.0 * static_cast<double>(s / curve_colours.size()));
         }
     }
-    for (std::size_t s = 0; data.series && s < lines; ++s) {
+    for (std::size_t s = 0; (lines > 1 || data.series) && s < lines; ++s) {
         const double x = figure.width() - legend_width - 6.0, y = top + 18.0 * static_cast<double>(s) + 18.0;
-        if (s == 0) figure.text({x, top + 2.0}, short_text(axis_title(*data.series)), 10.0, axis_soft);
+        if (s == 0 && data.series) figure.text({x, top + 2.0}, short_text(axis_title(*data.series)), 10.0, axis_soft);
         figure.line({{x, y - 3.5}, {x + 16.0, y - 3.5}}, curve_colours[s % curve_colours.size()], 2.5,
                     3.0 * static_cast<double>(s / curve_colours.size()));
-        figure.text({x + 21.0, y}, level_text(*data.series, s), 10.0, axis_ink);
+        figure.text({x + 21.0, y}, data.series ? level_text(*data.series, s) : short_text(data.choice.values[s]), 10.0,
+                    axis_ink);
     }
     return figure;
 }
@@ -259,7 +271,8 @@ Figure draw_heat(const FigureData& data) {
 }  // namespace
 
 Figure draw_sweep(const FigureData& data) {
-    if (data.cells.empty()) throw Error(fmt::format("no finished point has a number '{}' yet", data.choice.value));
+    if (data.cells.empty())
+        throw Error(fmt::format("no finished point has a number '{}' yet", data.choice.values.front()));
     const bool is_heat = data.choice.kind == FigureChoice::Kind::heat;
     Figure figure = is_heat ? draw_heat(data) : draw_lines(data);
     figure.text({20.0, 24.0}, heading(data), 14.0, axis_ink, display::TextAnchor::start, true);

@@ -32,13 +32,16 @@ std::string cell_rows(const analysis::FigureData& data) {
     std::string out = "<details><summary>numbers</summary><table><tr>";
     for (const sweep::Axis* axis : {data.panel, data.series, data.y, data.x})
         if (axis) out += fmt::format("<th>{}</th>", escaped(axis->name));
+    if (data.choice.values.size() > 1) out += "<th>column</th>";
     out += "<th class=\"n\">n</th><th class=\"n\">value</th><th class=\"n\">95 %</th></tr>\n";
     for (const analysis::FigureCell& cell : data.cells)
         out += fmt::format(
-            "<tr>{}{}{}{}<td class=\"n\">{}</td><td class=\"n\">{:.4g}</td><td class=\"n\">{:.4g} to "
-            "{:.4g}</td></tr>\n",
+            "<tr>{}{}{}{}{}<td class=\"n\">{}</td><td class=\"n\">{:.4g}</td><td class=\"n\">{}</td></tr>\n",
             level_cell(data.panel, cell.panel), level_cell(data.series, cell.series), level_cell(data.y, cell.y),
-            level_cell(data.x, cell.x), cell.count, cell.value, cell.low, cell.high);
+            level_cell(data.x, cell.x),
+            data.choice.values.size() > 1 ? fmt::format("<td>{}</td>", escaped(data.choice.values[cell.column])) : "",
+            cell.count, cell.value,
+            cell.interval ? fmt::format("{:.4g} to {:.4g}", cell.interval->first, cell.interval->second) : "–");
     return out + "</table></details>\n";
 }
 
