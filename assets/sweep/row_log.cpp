@@ -29,7 +29,8 @@ constexpr std::size_t id_at = before_id.size(), ok_at = id_at + 16 + after_id.si
 std::optional<RowHead> head_of(std::string_view line) {
     if (line.size() < head_length || !line.starts_with(before_id) || line.back() != '}' ||
         line.substr(id_at + 16, after_id.size()) != after_id ||
-        line.substr(ok_at + 1, before_output.size()) != before_output || line[output_at + 16] != '"')
+        line.substr(ok_at + 1, before_output.size()) != before_output || line[output_at + 16] != '"' ||
+        line.find('\0') != std::string_view::npos)  // a page that was never written, between two rows
         return {};
     const auto point = id_of_text(line.substr(id_at, 16)), output = id_of_text(line.substr(output_at, 16));
     if (!point || !output || (line[ok_at] != '0' && line[ok_at] != '1')) return {};
@@ -40,7 +41,12 @@ std::optional<RowHead> head_of(std::string_view line) {
 
 std::string row_line(const Row& row) {
     Json rest{{"seconds", row.seconds}, {"peak", row.peak}, {"finished", row.finished}, {"attempt", row.attempt}};
-    if (!row.is_ok) rest["reason"] = row.reason;
+    if (!row.is_ok) {
+        rest["reason"] = row.reason;
+        rest["step"] = row.step;
+        rest["exit_code"] = row.exit_code;
+        rest["signal"] = row.signal;
+    }
     if (row.values.size() > 0) rest["values"] = row.values;
     if (row.files.size() > 0) rest["files"] = row.files;
     return fmt::format("{}{}{}{}{}{}\",{}\n", before_id, text_of_id(row.point), after_id, row.is_ok ? 1 : 0,
@@ -56,6 +62,9 @@ Row read_row(std::string_view line) {
     row.output = head->output;
     row.is_ok = head->is_ok;
     row.reason = json.value("reason", std::string());
+    row.step = json.value("step", 0);
+    row.exit_code = json.value("exit_code", 0);
+    row.signal = json.value("signal", 0);
     row.seconds = json.value("seconds", 0.0);
     row.peak = json.value("peak", 0.0);
     row.finished = json.value("finished", 0.0);

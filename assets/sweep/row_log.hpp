@@ -26,7 +26,10 @@ struct Row {
     std::uint64_t point = 0;
     bool is_ok = false;
     std::uint64_t output = 0;  ///< hash of all that was kept
-    std::string reason;  ///< of a failure
+    std::string reason;  ///< of a failure, for people
+    int step = 0;  ///< that failed, from 1; 0: none, or its worker ended
+    int exit_code = 0;  ///< of that step
+    int signal = 0;  ///< that ended that step, or the worker; 0: none
     double seconds = 0.0;  ///< wall time
     double peak = 0.0;  ///< largest resident memory, bytes
     double finished = 0.0;  ///< s since 1970

@@ -270,6 +270,32 @@ TEST_CASE("a sweep file is refused with the place and the remedy") {
     }
 }
 
+TEST_CASE("a figure that contradicts itself is refused") {
+    const SweepPlace place;
+    const std::string text = preamble +
+                             "[axes.a]\nvalues = [1, 2]\n[axes.b]\nvalues = [1, 2]\n[[step]]\ncommand = "
+                             "[\"x\"]\nvalues = {u = \"/u\", v = \"/v\"}\n[[figure]]\nname = \"f\"\n";
+    const std::pair<std::string, std::string> wrong[] = {
+        {"value = \"u\"\nx = \"c\"\n", "there is no axis 'c'"},
+        {"value = \"u\"\nx = \"a\"\nunless = \"w\"\n", "no step has a value 'w'"},
+        {"value = \"u\"\nx = \"a\"\nseries = \"a\"\n", "each axis once"},
+        {"value = \"u\"\nx = \"a\"\nkind = \"heat\"\n", "needs 'y'"},
+        {"value = \"u\"\nx = \"a\"\ny = \"b\"\n", "belongs to a heat map"},
+        {"value = [\"u\", \"v\"]\nx = \"a\"\ny = \"b\"\nkind = \"heat\"\n", "shows one value"},
+        {"value = [\"u\", \"v\"]\nx = \"a\"\nseries = \"b\"\n", "a line each"},
+        {"value = [\"u\", \"v\"]\nminus = \"u\"\nx = \"a\"\n", "a column for each value: 1 of 2"},
+        {"value = \"u\"\nminus = \"v\"\nx = \"a\"\nstatistic = \"fraction\"\n", "has no fraction"},
+        {"value = \"u\"\nx = \"a\"\nstatistic = \"mode\"\n", "median"},
+        {"value = \"u\"\nminus = \"v\"\nx = \"a\"\nlog = true\n", "no logarithmic axis"},
+    };
+    for (const auto& [figure, message] : wrong) {
+        CAPTURE(figure, message);
+        CHECK(place.error(text + figure).find(message) != std::string::npos);
+    }
+    const Sweep sweep = place.load(text + "value = [\"u\", \"v\"]\nx = \"a\"\npanel = \"b\"\n");
+    CHECK(sweep.figures.at(0).values == std::vector<std::string>{"u", "v"});
+}
+
 TEST_CASE("two points with the same inputs are refused") {
     const SweepPlace place;
     place.write("a.csv", "x\n1\n1\n");
@@ -300,9 +326,13 @@ TEST_CASE("a row is read as it was written, and half a row is none") {
     Row failed = row;
     failed.is_ok = false;
     failed.reason = "why";
+    failed.step = 2;
+    failed.exit_code = 3;
+    failed.signal = 15;
     fs::create_directories(place.path / "log");
-    const std::string zeros(5000, '\0');
-    place.write("log/a.jsonl", "{\"worker\":{\"machine\":\"here\"}}\n" + line + zeros + "\n" + row_line(failed) +
+    // Pages that were never written: between two rows, and over the end of one and the begin of the next.
+    const std::string zeros(5000, '\0'), hole = line.substr(0, 60) + zeros + line.substr(80);
+    place.write("log/a.jsonl", "{\"worker\":{\"machine\":\"here\"}}\n" + line + zeros + "\n" + hole + row_line(failed) +
                                    "no row\n" + line.substr(0, line.size() - 5));
     const auto files = log_files(place.path);
     REQUIRE(files.size() == 1);
@@ -312,10 +342,14 @@ TEST_CASE("a row is read as it was written, and half a row is none") {
     const std::size_t damaged = log.scan([&](const RowHead& head, std::uint64_t at, std::uint32_t length) {
         ok.push_back(head.is_ok);
         CHECK(head.point == row.point);
-        CHECK(read_row(log.line(at, length)).reason == (head.is_ok ? "" : "why"));
+        const Row found = read_row(log.line(at, length));
+        CHECK(found.reason == (head.is_ok ? "" : "why"));
+        CHECK(found.step == (head.is_ok ? 0 : 2));
+        CHECK(found.exit_code == (head.is_ok ? 0 : 3));
+        CHECK(found.signal == (head.is_ok ? 0 : 15));
     });
     CHECK(ok == std::vector<bool>{true, false});
-    CHECK(damaged == 2);
+    CHECK(damaged == 3);
 }
 
 TEST_CASE("a log is read in blocks, also across their borders") {

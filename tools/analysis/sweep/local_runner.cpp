@@ -114,7 +114,7 @@ bool send_all(int handle, const void* from, std::size_t size) {
 
 /// The life of a worker: tasks in, lines of rows out.
 [[noreturn]] void work(int handle, const SweepFolder& folder, const LocalRun& options, const fs::path& scratch) {
-    PointContext context{&folder, scratch, options.program, options.run_verb, true};
+    const PointContext context{&folder, scratch, options.program, options.run_verb, true, {}};
     Task task;
     while (read_exactly(handle, &task, sizeof task)) {
         std::error_code failure;
@@ -139,6 +139,7 @@ struct Worker {
     Clock::time_point begin;
     std::string inbox;
     double peak = 0.0;  // bytes, of this attempt, as seen from outside
+    double resident = 0.0;  // bytes, at the last look; 0 before the first
     std::string killed;  // why; empty: it was not
 };
 
@@ -212,7 +213,7 @@ private:
             const auto busy = static_cast<std::size_t>(
                 std::ranges::count_if(workers_, [](const Worker& w) { return w.task.has_value(); }));
             if (idle == workers_.end() && workers_.size() >= static_cast<std::size_t>(jobs_)) return;
-            if (busy > 0 && !has_memory_for_another()) {
+            if (busy > 0 && !has_memory_for(idle == workers_.end() ? nullptr : &*idle)) {
                 progress_.is_waiting_for_memory = true;
                 return;
             }
@@ -232,16 +233,24 @@ private:
         }
     }
 
-    /// Looks at the machine at most every 50 ms.
-    bool has_memory_for_another() {
-        const double limit = static_cast<double>(folder_.sweep().limits.bytes);
-        const double need = limit > 0.0 ? limit : largest_peak_;
-        if (need == 0.0) return true;  // nothing is known yet
+    /// `idle`: the worker that would get a point; null: a new one. Looks at the machine at most every 50 ms; workers that
+    /// were started since then count as empty, so that all they may need is reserved.
+    bool has_memory_for(const Worker* idle) {
         if (seconds_since(memory_seen_) > 0.05) {
             available_ = available_memory();
+            for (Worker& worker : workers_) worker.resident = resident_of(worker.process);
             memory_seen_ = Clock::now();
         }
-        return available_ > 1.1 * need;
+        const double limit = static_cast<double>(folder_.sweep().limits.bytes);
+        std::vector<double> busy;
+        double need = limit > 0.0 ? limit : largest_peak_;
+        for (const Worker& worker : workers_)
+            if (worker.task) {
+                busy.push_back(worker.resident);
+                if (limit == 0.0) need = std::max(need, worker.resident);
+            }
+        // Without a limit, nothing is known before the first points run.
+        return need == 0.0 || fits_in_memory(available_, need, busy, idle ? idle->resident : 0.0);
     }
 
     void start() {
@@ -350,7 +359,9 @@ private:
             why = WIFSIGNALED(status) ? fmt::format("the worker was killed by signal {} ({})", WTERMSIG(status),
                                                     ::strsignal(WTERMSIG(status)))
                                       : fmt::format("the worker ended with exit code {}", WEXITSTATUS(status));
-        settle(*task, failed_row(*task, why, seconds, peak), {});
+        Row row = failed_row(*task, why, seconds, peak);
+        if (killed.empty() && WIFSIGNALED(status)) row.signal = WTERMSIG(status);
+        settle(*task, row, {});
     }
 
     Row failed_row(const Task& task, const std::string& why, double seconds, double peak) const {
@@ -368,10 +379,7 @@ private:
     void settle(const Task& task, const Row& row, const std::string& line) {
         largest_peak_ = std::max(largest_peak_, row.peak);
         if (!row.is_ok && is_being_ended(row)) return;
-        const bool is_rejected =
-            row.reason.find(fmt::format("exit code {}: ", static_cast<int>(bad_input))) != std::string::npos &&
-            std::ranges::all_of(folder_.sweep().steps, &sweep::Step::is_own);
-        if (!row.is_ok && !is_rejected && static_cast<int>(task.attempt) <= folder_.sweep().limits.retries) {
+        if (!row.is_ok && !is_rejected(row) && static_cast<int>(task.attempt) <= folder_.sweep().limits.retries) {
             ++progress_.retried;
             waiting_.push_back({task.index, task.attempt + 1});
             return;
@@ -384,10 +392,19 @@ private:
         longest_ = std::max(longest_, row.seconds);
     }
 
+    /// A verb of Tactus rejected its input, and no program made that input.
+    bool is_rejected(const Row& row) const {
+        const std::vector<sweep::Step>& steps = folder_.sweep().steps;
+        return row.step > 0 && row.exit_code == bad_input &&
+               std::all_of(steps.begin(), steps.begin() + row.step,
+                           [](const sweep::Step& step) { return step.is_own; });
+    }
+
     /// A scheduler ends a job by SIGTERM to all of its processes, in no particular order: a point that met it did not
     /// fail; it stays unfinished.
     bool is_being_ended(const Row& row) const {
-        if (!is_stopped() && row.reason.find("signal 15") != std::string::npos)
+        constexpr int of_shell = 128 + SIGTERM;  // exit code of a shell whose child was ended
+        if (!is_stopped() && (row.signal == SIGTERM || row.exit_code == of_shell))
             std::this_thread::sleep_for(std::chrono::milliseconds(100));
         return is_stopped();
     }
@@ -480,6 +497,12 @@ std::optional<std::size_t> number_of_environment(const char* name) {
 }
 
 }  // namespace
+
+bool fits_in_memory(double available, double need, std::span<const double> busy, double idle) {
+    double reserved = 1.1 * need - std::min(idle, need);
+    for (const double resident : busy) reserved += std::max(0.0, need - resident);
+    return available > reserved;
+}
 
 RunProgress run_locally(const SweepFolder& folder, const LocalRun& options) {
     return LocalRunner(folder, options).run();

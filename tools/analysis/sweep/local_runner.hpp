@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,10 +50,15 @@ struct RunProgress {
     bool is_waiting_for_memory = false;
 };
 
+/// True if a point that needs `need` bytes may be handed out. `available`: bytes that new memory may use; `busy`: resident
+/// bytes of each worker that has a point, which may still grow to the need; `idle`: those of the worker that gets it, 0 for
+/// a new one. A tenth of the need stays free.
+bool fits_in_memory(double available, double need, std::span<const double> busy, double idle);
+
 /// Runs all points of the share that have no successful row. Workers live for many points, so that what they loaded stays
 /// loaded; one that exceeds a limit, crashes or grows too large is replaced. A point that fails is tried again as often
 /// as the sweep states, unless a verb of Tactus rejected its input (exit code 2): that would fail again. Another worker
-/// is only started, and a point only handed out, while the memory that a point needed so far is available. Ends early,
+/// is only started, and a point only handed out, while the memory that a point needed so far is available, less what the running points may still take. Ends early,
 /// without rows for the points that are running, when `stop` is set. Throws LogFailure.
 RunProgress run_locally(const SweepFolder& folder, const LocalRun& options);
 

@@ -10,10 +10,6 @@
 #include <fmt/ranges.h>
 
 #include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -34,43 +30,10 @@ using sweep::Row;
 
 namespace {
 
-constexpr std::size_t max_output = 256 << 20;  // bytes
-
-/// A file in memory that a step writes to.
-class Capture {
-public:
-    explicit Capture(const char* name) : handle_(::memfd_create(name, MFD_CLOEXEC)) {
-        if (handle_ < 0) throw Error(fmt::format("cannot capture output: {}", std::strerror(errno)));
-    }
-    ~Capture() { ::close(handle_); }
-    Capture(const Capture&) = delete;
-    Capture& operator=(const Capture&) = delete;
-
-    int handle() const { return handle_; }
-    std::string text() const {
-        const off_t size = ::lseek(handle_, 0, SEEK_END);
-        if (size < 0 || static_cast<std::size_t>(size) > max_output)
-            throw Error(fmt::format("the step wrote {} MB", size >> 20));
-        std::string text(static_cast<std::size_t>(size), '\0');
-        const ssize_t count = ::pread(handle_, text.data(), text.size(), 0);
-        text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
-        return text;
-    }
-
-private:
-    int handle_;
-};
-
-struct Finished {
-    int code = 0;    ///< exit code; −1: killed
-    int signal = 0;
-    double peak = 0.0;  ///< bytes, of a process of its own
-};
-
 /// Standard output and error go to the captures until destroyed.
 class Redirected {
 public:
-    Redirected(const Capture& out, const Capture& err) {
+    Redirected(const run::Capture& out, const run::Capture& err) {
         std::fflush(nullptr);
         out_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
         err_ = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
@@ -90,39 +53,6 @@ public:
 private:
     int out_, err_;
 };
-
-Finished run_process(const std::vector<std::string>& words, const fs::path& folder, const Capture& out,
-                     const Capture& err) {
-    std::vector<char*> argv;
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    const pid_t parent = ::getpid();
-    const pid_t child = ::fork();
-    if (child < 0) throw Error(fmt::format("cannot start a process: {}", std::strerror(errno)));
-    if (child == 0) {
-        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (::getppid() != parent) ::_exit(127);
-        const rlimit none{0, 0};
-        ::setrlimit(RLIMIT_CORE, &none);
-        std::signal(SIGPIPE, SIG_DFL);  // ignored here; a program expects what a shell gives it
-        ::dup2(out.handle(), STDOUT_FILENO);
-        ::dup2(err.handle(), STDERR_FILENO);
-        if (::chdir(folder.c_str()) != 0) ::_exit(127);
-        ::execvp(argv[0], argv.data());
-        const std::string why = fmt::format("{}: cannot be run: {}\n", words.front(), std::strerror(errno));
-        [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, why.data(), why.size());
-        ::_exit(127);
-    }
-    int status = 0;
-    rusage usage{};
-    while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
-    }
-    Finished finished;
-    finished.peak = static_cast<double>(usage.ru_maxrss) * 1024.0;
-    finished.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    finished.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return finished;
-}
 
 void reset_peak() {
     std::ofstream("/proc/self/clear_refs") << "5";  // sets the largest resident size to the present one
@@ -215,6 +145,7 @@ public:
             row_.files = Json::object();
         } else {
             row_.output = hash_.value();
+            row_.step = row_.exit_code = 0;
         }
         row_.peak = std::max(peak_of_this_process(), child_peak_);
         row_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -226,17 +157,24 @@ private:
     void run_step(std::size_t s) {
         const sweep::Step& step = sweep_.steps[s];
         std::vector<std::string> words = sweep::words_of(sweep_, step, point_, id_, context_.scratch, context_.program);
-        const Capture out("output"), err("errors");
-        Finished finished;
+        const run::Capture out("output"), err("errors");
+        run::Finished finished;
         if (step.is_own && context_.run_verb) {
             const Redirected to(out, err);
             finished.code = context_.run_verb(words);
         } else {
             if (step.is_own) words.insert(words.begin(), context_.program.string());
-            finished = run_process(words, context_.scratch, out, err);
+            finished = run::run_process(words, context_.scratch, out, err, context_.limits);
             child_peak_ = std::max(child_peak_, finished.peak);
         }
         const std::string which = sweep_.steps.size() > 1 ? fmt::format("step {}: ", s + 1) : std::string();
+        row_.step = static_cast<int>(s + 1);
+        row_.exit_code = finished.code;
+        row_.signal = finished.signal;
+        if (finished.is_late) {
+            row_.reason = fmt::format("{}took longer than {:g} s", which, context_.limits.seconds);
+            return;
+        }
         if (finished.signal != 0) {
             row_.reason =
                 fmt::format("{}killed by signal {} ({})", which, finished.signal, ::strsignal(finished.signal));
@@ -254,7 +192,7 @@ private:
         }
     }
 
-    void keep_values(const sweep::Step& step, const Capture& out) {
+    void keep_values(const sweep::Step& step, const run::Capture& out) {
         const std::string text = step.from.empty() ? out.text() : file::read_whole_file(context_.scratch / step.from);
         const Json json = Json::parse_or_null(text);
         if (json.is_null())

@@ -5,6 +5,7 @@
 #include "assets/file/json.hpp"
 #include "assets/sweep/row_log.hpp"
 #include "tools/analysis/sweep/sweep_folder.hpp"
+#include "tools/run/child_process.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -23,6 +24,7 @@ struct PointContext {
     std::filesystem::path program;  ///< this program, for {tactus} and where `run_verb` is null
     RunVerb run_verb;               ///< null: each verb runs in a process of its own
     bool keeps_files = true;        ///< false: kept files are hashed and dropped
+    run::ProcessLimits limits;      ///< of each process; a worker has none: its parent watches it
 };
 
 /// Runs the steps of a point in order, with standard output and error captured. A step that fails ends it. Fills all of

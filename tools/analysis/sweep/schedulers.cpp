@@ -3,19 +3,14 @@
 
 #include "dsp/core/error.hpp"
 #include "tools/analysis/sweep/results.hpp"
+#include "tools/run/child_process.hpp"
+#include "tools/shell_word.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <sstream>
 
 namespace tactus::analysis {
@@ -24,52 +19,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Standard output of a program; throws Error with what it wrote to standard error when it fails.
-std::string output_of(const std::vector<std::string>& words) {
-    std::array<int, 2> out{}, err{};
-    if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0)
-        throw Error(fmt::format("cannot start {}: {}", words.front(), std::strerror(errno)));
-    std::vector<char*> argv;
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    const pid_t child = ::fork();
-    if (child == 0) {
-        ::dup2(out[1], STDOUT_FILENO);
-        ::dup2(err[1], STDERR_FILENO);
-        ::execvp(argv[0], argv.data());
-        const std::string_view why = std::strerror(errno);
-        [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, why.data(), why.size());
-        ::_exit(127);
-    }
-    ::close(out[1]);
-    ::close(err[1]);
-    // The messages of these programs fit into a pipe.
-    const auto read_all = [](int handle) {
-        std::string text;
-        std::array<char, 4096> block{};
-        for (ssize_t count = 0; (count = ::read(handle, block.data(), block.size())) != 0;) {
-            if (count < 0 && errno == EINTR) continue;
-            if (count < 0) break;
-            text.append(block.data(), static_cast<std::size_t>(count));
-        }
-        ::close(handle);
-        while (!text.empty() && text.back() == '\n') text.pop_back();
-        return text;
-    };
-    const std::string text = read_all(out[0]), message = read_all(err[0]);
-    int status = 0;
-    while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (child < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw Error(fmt::format("{}: {}", words.front(), message.empty() ? "failed without a message" : message));
+std::string without_line_end(std::string text) {
+    while (!text.empty() && text.back() == '\n') text.pop_back();
     return text;
 }
 
-/// For a POSIX shell.
-std::string shell_word(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
+/// Standard output of a program; throws Error with what it wrote to standard error when it fails.
+std::string output_of(const std::vector<std::string>& words) {
+    const run::Capture out("output"), err("errors");
+    const run::Finished finished = run::run_process(words, {}, out, err);
+    if (finished.code == 0 && finished.signal == 0) return without_line_end(out.text());
+    const std::string message = without_line_end(err.text());
+    throw Error(message.starts_with(words.front() + ":") ? message
+                : message.empty()                        ? words.front() + ": failed without a message"
+                                                         : fmt::format("{}: {}", words.front(), message));
 }
 
 /// Largest number of elements of an array, from the configuration.

@@ -43,7 +43,12 @@ Verification verify_points(const Results& results, const std::vector<std::size_t
                            const fs::path& program, const std::atomic<bool>& stop,
                            const std::function<void(std::size_t done)>& tell) {
     const run::ScratchFolder scratch;
-    const PointContext context{&results.folder(), scratch.path() / "point", program, nullptr, false};
+    const PointContext context{&results.folder(),
+                               scratch.path() / "point",
+                               program,
+                               nullptr,
+                               false,
+                               {results.folder().sweep().limits.seconds, &stop}};
     Verification found;
     for (std::size_t n = 0; n < points.size() && !stop; ++n) {
         const std::size_t index = points[n];

@@ -138,6 +138,39 @@ retries = 0
     CHECK(run.out.find("1 of 3 points done, 2 failed") != std::string::npos);
 }
 
+TEST_CASE("a verb that rejects its input is not tried again, and a program's exit code 2 is", "[kernel]") {
+    const Folder folder;
+    const std::string more = "[limits]\nretries = 2\n";
+    const fs::path verb =
+        folder.write("verb.toml",
+                     "format = 1\ntitle = \"Verb\"\n[[step]]\ntactus = [\"render\", \"no-such-patch\", \"-o\", "
+                     "\"{out}/run\"]\n" +
+                         more);
+    CHECK(folder.tactus("sweep run " + verb.string() + " -o " + in(folder, "a")).code == 1);
+    CHECK(query(folder.path / "a/results.sqlite", "select attempt, state from results") == "1|failed\n");
+    // Its words look like those of a verb.
+    const fs::path program = folder.write("program.toml",
+                                          "format = 1\ntitle = \"Program\"\n[[step]]\ncommand = [\"sh\", \"-c\", "
+                                          "\"echo exit code 2: signal 15 >&2; exit 2\"]\n" +
+                                              more);
+    CHECK(folder.tactus("sweep run " + program.string() + " -o " + in(folder, "b")).code == 1);
+    CHECK(query(folder.path / "b/results.sqlite", "select attempt, state from results") == "3|failed\n");
+}
+
+TEST_CASE("verify ends a point that hangs, and standard input is empty", "[kernel]") {
+    const Folder folder;
+    // The first run of the point leaves a mark; the second one waits for ever.
+    const fs::path file = folder.write(
+        "sweep.toml",
+        fmt::format("format = 1\ntitle = \"Hang\"\n[[step]]\ncommand = [\"sh\", \"-c\", \"cat; mkdir {} || sleep "
+                    "1000\"]\n[limits]\ntime = \"0.5 s\"\n",
+                    in(folder, "mark")));
+    REQUIRE(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a")).code == 0);
+    const Outcome verify = folder.tactus("sweep verify " + in(folder, "a"));
+    CHECK(verify.code == 1);
+    CHECK(verify.err.find("took longer than 0.5 s") != std::string::npos);
+}
+
 TEST_CASE("a full disk fails the points that met it, and a run with room completes the table", "[kernel]") {
     const Folder folder;
     const fs::path file = folder.write("sweep.toml", two_hundred_points());
@@ -306,6 +339,16 @@ x = "level"
         folder.tactus("sweep plot " + in(folder, "a") + " --value vlaue --x level -o " + in(folder, "c.svg"));
     CHECK(wrong.code == 2);
     CHECK(wrong.err.find("did you mean 'value'") != std::string::npos);
+    const Outcome twice = folder.tactus("sweep plot " + in(folder, "a") +
+                                        " --value value --x level --series level -o " + in(folder, "c.svg"));
+    CHECK(twice.code == 2);
+    CHECK(twice.err.find("each axis once") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder.path / "c.svg"));
+    CHECK(folder.tactus("sweep plot " + in(folder, "a") + " --value value,drawn --x level -o " + in(folder, "d.svg"))
+              .code == 0);
+    const std::string two = slurp(folder.path / "d.svg");
+    CHECK(two.find(">value<") != std::string::npos);
+    CHECK(two.find(">drawn<") != std::string::npos);
     CHECK(folder.tactus("sweep report " + in(folder, "a")).code == 0);
     const std::string page = slurp(folder.path / "a/report.html");
     CHECK(page.find("<h2>Failures</h2>") < page.find("<h2>Axes</h2>"));
