@@ -44,5 +44,6 @@ Verb fundamental_verb();
 Verb identify_verb();
 Verb verdicts_verb();
 Verb experiments_verb();
+Verb sweep_verb();
 
 }  // namespace tactus::bench

@@ -5,7 +5,8 @@
 namespace tactus::command {
 
 Verb sweep_verb() {
-    return {"sweep", "run any verb over a grid or a design, on this machine or on a cluster", nullptr, sweep_verbs};
+    return {"sweep", "run verbs or programs over a grid or a design, on this machine or on a cluster", nullptr,
+            sweep_verbs};
 }
 
 }  // namespace tactus::command
