@@ -27,7 +27,7 @@ tactus_place(TACTUS_INSTALLED_MODULES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus assets
 tactus_place(TACTUS_INSTALLED_NODES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus graph/plugin/plugins.cpp)
 
 install(DIRECTORY assets/library/patches assets/library/displays assets/library/sweeps DESTINATION ${installed_library}
-        COMPONENT common FILES_MATCHING PATTERN "*.toml")
+        COMPONENT common FILES_MATCHING PATTERN "*.toml" PATTERN "*.targets")
 install(DIRECTORY assets/library/experiments DESTINATION ${installed_library} COMPONENT common)
 install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} COMPONENT common FILES_MATCHING PATTERN "*.png")
 install(DIRECTORY docs/how-to/patches/ DESTINATION ${installed_library}/examples COMPONENT common FILES_MATCHING PATTERN "*.toml")

@@ -6,6 +6,7 @@
 #include "assets/sweep/sobol.hpp"
 #include "assets/sweep/template_word.hpp"
 #include "assets/table/number_table.hpp"
+#include "dsp/core/lower.hpp"
 #include "dsp/core/random.hpp"
 
 #include <fmt/format.h>
@@ -77,10 +78,14 @@ private:
         if (!is_plain(name))
             toml_.fail(node, fmt::format("'{}' is no name: 1 to 40 letters, digits and '_', not beginning with a digit",
                                          name));
-        if (std::ranges::find(reserved, name) != reserved.end())
+        // Names of columns in SQLite do not distinguish capitals.
+        if (std::ranges::find(reserved, lower(name)) != reserved.end())
             toml_.fail(node, fmt::format("'{}' is a column that every sweep has; choose another name", name));
-        if (!names_.insert(name).second)
-            toml_.fail(node, fmt::format("'{}' is used twice; columns of the results need different names", name));
+        if (!names_.insert(lower(name)).second)
+            toml_.fail(
+                node,
+                fmt::format("'{}' is used twice; columns of the results need different names, also without capitals",
+                            name));
     }
 
     fs::path path_of(const std::string& name) const {
@@ -288,9 +293,12 @@ private:
         if (read.rows() == 0) toml_.fail(node, fmt::format("{} has no rows", path.string()));
         if (read.rows() > max_levels) toml_.fail(node, "the table has over five million rows");
         std::vector<const std::vector<std::string>*> columns;
+        std::set<std::string> seen;
         for (const std::string& name : axis.columns) {
             if (!is_plain(name))
                 toml_.fail(node, fmt::format("the column '{}' is no name: letters, digits and '_'", name));
+            if (!seen.insert(lower(name)).second)
+                toml_.fail(node, fmt::format("the column '{}' is there twice; choose with 'columns'", name));
             columns.push_back(&read.text(name));
         }
         for (std::size_t row = 0; row < read.rows(); ++row) {
@@ -354,9 +362,11 @@ private:
             const toml::node& node = *table.get(key->str());
             KeptValue kept{std::string(key->str()), toml_.word(node)};
             take_name(node, kept.name);
-            if (!kept.pointer.starts_with('/'))
-                toml_.fail(node, fmt::format("'{}' is no JSON pointer; write \"/section/name\" or \"/rows/0/success\"",
-                                             kept.pointer));
+            if (!kept.pointer.empty() && !kept.pointer.starts_with('/'))
+                toml_.fail(node,
+                           fmt::format(
+                               "'{}' is no JSON pointer; write \"/section/name\", \"/rows/0/success\", or \"\" for all",
+                               kept.pointer));
             step.values.push_back(std::move(kept));
         }
     }

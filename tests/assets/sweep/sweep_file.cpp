@@ -243,6 +243,8 @@ TEST_CASE("a sweep file is refused with the place and the remedy") {
         {preamble + "[axes.a]\nvalues = [1]\nrange = [1, 2]\n", "exactly one of values"},
         {preamble + "[axes.a]\nvalues = [1, 1]\n", "has the level '1' twice"},
         {preamble + "[axes.seed]\nvalues = [1]\n", "a column that every sweep has"},
+        {preamble + "[axes.State]\nvalues = [1]\n", "a column that every sweep has"},
+        {preamble + "[axes.rate]\nvalues = [1]\n[axes.Rate]\nvalues = [1]\n", "used twice"},
         {preamble + "[axes.a]\nrange = [2, 1]\ncount = 3\n", "first bound must be below"},
         {preamble + "[axes.a]\nlog_range = [0, 1]\ncount = 3\n", "number from"},
         {preamble + "[axes.a]\nrandom = [0, 1]\n", "samples = 256"},

@@ -122,6 +122,11 @@ bool send_all(int handle, const void* from, std::size_t size) {
         fs::current_path(scratch, failure);  // as in a process of its own
         Row row = run_point(context, task.index);
         fs::remove_all(scratch, failure);
+        // A verb installed its handlers, and a signal has ended it early, as it would every later one in this process.
+        if (options.stop && *options.stop) {
+            std::signal(SIGTERM, SIG_DFL);
+            std::raise(SIGTERM);
+        }
         row.attempt = static_cast<int>(task.attempt);
         const std::string line = sweep::row_line(row);
         const auto size = static_cast<std::uint32_t>(line.size());
@@ -168,7 +173,7 @@ public:
     RunProgress run() {
         begin_ = last_written_ = Clock::now();
         if (!waiting_.empty()) {
-            const fs::path log = folder_.path() / "log" / (process_name() + ".jsonl");
+            const fs::path log = new_log();
             try {
                 log_ = std::make_unique<file::GrowingFile>(log);
             } catch (const Error& error) {
@@ -190,6 +195,20 @@ public:
     }
 
 private:
+    /// An empty file that no other process has: containers may share name, process number and microsecond.
+    fs::path new_log() const {
+        for (int tries = 0;; ++tries) {
+            const fs::path log = folder_.path() / "log" / (process_name() + ".jsonl");
+            const int handle = ::open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+            if (handle >= 0) {
+                ::close(handle);
+                return log;
+            }
+            if (errno != EEXIST || tries == 100)
+                throw LogFailure(fmt::format("{}: cannot be written: {}", log.string(), std::strerror(errno)));
+        }
+    }
+
     /// At once: a row that was reported is not lost when this process ends.
     void append(const std::string& line) {
         try {
@@ -378,7 +397,7 @@ private:
     /// `line`: as the worker wrote it; empty: written here.
     void settle(const Task& task, const Row& row, const std::string& line) {
         largest_peak_ = std::max(largest_peak_, row.peak);
-        if (!row.is_ok && is_being_ended(row)) return;
+        if (is_being_ended(row)) return;
         if (!row.is_ok && !is_rejected(row) && static_cast<int>(task.attempt) <= folder_.sweep().limits.retries) {
             ++progress_.retried;
             waiting_.push_back({task.index, task.attempt + 1});
@@ -400,8 +419,8 @@ private:
                            [](const sweep::Step& step) { return step.is_own; });
     }
 
-    /// A scheduler ends a job by SIGTERM to all of its processes, in no particular order: a point that met it did not
-    /// fail; it stays unfinished.
+    /// A scheduler ends a job by SIGTERM to all of its processes, in no particular order: a point that met it neither
+    /// failed nor succeeded; it stays unfinished.
     bool is_being_ended(const Row& row) const {
         constexpr int of_shell = 128 + SIGTERM;  // exit code of a shell whose child was ended
         if (!is_stopped() && (row.signal == SIGTERM || row.exit_code == of_shell))

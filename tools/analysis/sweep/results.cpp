@@ -100,7 +100,7 @@ public:
         cells.push_back(row.is_ok ? Cell(sweep::text_of_id(row.output)) : Cell());
         cells.push_back(row.is_ok ? Cell() : Cell(row.reason));
         cells.emplace_back(row.seconds);
-        cells.emplace_back(std::round(row.peak * 1e-4) * 1e-2);
+        cells.emplace_back(std::round(row.peak * 1e-4) / 100.0);
         cells.emplace_back(static_cast<std::int64_t>(row.attempt));
         cells.emplace_back(time_text(row.finished));
     }
@@ -290,8 +290,11 @@ std::vector<Results::Failure> Results::failures() const {
     for (std::size_t i = 0; i < places_.size() && read < max_read; ++i)
         if (places_[i].state == State::failed) {
             ++read;
-            Failure& failure = by_reason[row(i).reason];
-            if (failure.count++ == 0) failure.example = i;
+            const Row failed = row(i);
+            Failure& failure = by_reason[failed.reason];
+            if (failure.count++ > 0) continue;
+            failure.example = i;
+            failure.step = failed.step;
         }
     std::vector<Failure> all;
     for (auto& [reason, failure] : by_reason) {
@@ -299,7 +302,7 @@ std::vector<Results::Failure> Results::failures() const {
         all.push_back(failure);
     }
     std::ranges::stable_sort(all, std::greater(), &Failure::count);
-    if (read < failed_) all.push_back({"(not read: only the first 20000 failures are)", failed_ - read, 0});
+    if (read < failed_) all.push_back({"(not read: only the first 20000 failures are)", failed_ - read, 0, 0});
     return all;
 }
 

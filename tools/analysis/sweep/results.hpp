@@ -50,10 +50,12 @@ public:
     /// Hash of all points with their outputs: two runs of a sweep with the same hash have the same results.
     std::uint64_t hash() const;
 
-    /// Failures, most frequent first: reason, number of points, and the index of one of them.
+    /// Failures, most frequent first: reason, number of points, and the index of one of them with the step that failed
+    /// (from 1; 0: its worker ended).
     struct Failure {
         std::string reason;
         std::size_t count = 0, example = 0;
+        int step = 0;
     };
     std::vector<Failure> failures() const;
 

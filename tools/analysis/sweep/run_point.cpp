@@ -95,9 +95,26 @@ std::string last_line(const std::string& text) {
     return short_line(left);
 }
 
+/// How far a pointer leads, and what is there: "/rows/0 has file, error".
+std::string nearest(const Json& json, std::string pointer) {
+    while (!value_at(json, pointer)) pointer.resize(pointer.rfind('/'));
+    const Json& last = *value_at(json, pointer);
+    std::string there;
+    if (last.is_array()) there = fmt::format("a list of {}", last.size());
+    else if (last.is_object()) {
+        std::size_t count = 0;
+        for (const auto& [key, value] : last.items())
+            if (++count <= 8) there += (count > 1 ? ", " : "") + key;
+        if (count > 8) there += fmt::format(" and {} more", count - 8);
+    } else there = last.dump();
+    return fmt::format("{} has {}", pointer.empty() ? "its root" : pointer, there);
+}
+
 void keep_value(Row& row, Hash& hash, const sweep::KeptValue& kept, const Json& json) {
     const Json* found = value_at(json, kept.pointer);
-    if (!found) throw Error(fmt::format("the JSON has no {} for '{}'", kept.pointer, kept.name));
+    if (!found)
+        throw Error(
+            fmt::format("the JSON has no {} for '{}': {}", kept.pointer, kept.name, nearest(json, kept.pointer)));
     Json value = *found;
     if (value.is_array() || value.is_object()) value = Json(value.dump());
     hash.add_text(kept.name);
@@ -181,7 +198,8 @@ private:
             return;
         }
         if (std::ranges::find(step.accepted, finished.code) == step.accepted.end()) {
-            row_.reason = fmt::format("{}exit code {}: {}", which, finished.code, last_line(err.text()));
+            const std::string why = last_line(err.text());
+            row_.reason = fmt::format("{}exit code {}{}{}", which, finished.code, why.empty() ? "" : ": ", why);
             return;
         }
         try {

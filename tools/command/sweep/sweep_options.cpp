@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tactus::command {
 
 int run_verb_here(const std::vector<std::string>& words) {
@@ -52,7 +54,7 @@ std::string results_text(const analysis::Results& results) {
     std::string text;
     for (const analysis::Results::Failure& failure : results.failures())
         text += fmt::format("failed: {}: {}\n  such as point {}: {}\n", counted(failure.count, "point"), failure.reason,
-                            failure.example + 1, point_text(results.folder(), failure.example));
+                            failure.example + 1, point_text(results.folder(), failure.example, failure.step));
     for (const std::string& conflict : results.conflicts()) text += fmt::format("conflict: {}\n", conflict);
     text += fmt::format("{} of {} done, {} failed, {} to run\n", results.done(), counted(results.size(), "point"),
                         results.failed(), results.unfinished());
@@ -67,14 +69,15 @@ std::string results_text(const analysis::Results& results) {
     return text;
 }
 
-std::string point_text(const analysis::SweepFolder& folder, std::size_t index) {
+std::string point_text(const analysis::SweepFolder& folder, std::size_t index, int step) {
     const sweep::Sweep& sweep = folder.sweep();
     if (sweep.steps.empty()) return "no step";
-    std::string text = sweep.steps.front().is_own ? "tactus" : "";
-    for (const std::string& word : sweep::words_of(sweep, sweep.steps.front(), folder.tasks().point(index),
-                                                   folder.tasks().id(index), "OUT", "tactus")) {
+    const sweep::Step& shown =
+        sweep.steps[std::min(sweep.steps.size(), static_cast<std::size_t>(std::max(step, 1))) - 1];
+    std::string text = shown.is_own ? "tactus" : "";
+    for (const std::string& word :
+         sweep::words_of(sweep, shown, folder.tasks().point(index), folder.tasks().id(index), "OUT", "tactus"))
         text += (text.empty() ? "" : " ") + short_shell_word(word);
-    }
     return text;
 }
 

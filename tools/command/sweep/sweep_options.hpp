@@ -24,7 +24,7 @@ std::string duration_text(double seconds);
 /// Counts, and failures with their reasons first.
 std::string results_text(const analysis::Results& results);
 
-/// The words of the first step at a point, as a shell would read them; for repeating it by hand.
-std::string point_text(const analysis::SweepFolder& folder, std::size_t index);
+/// The words of a step (from 1) at a point, as a shell would read them; for repeating it by hand.
+std::string point_text(const analysis::SweepFolder& folder, std::size_t index, int step = 1);
 
 }  // namespace tactus::command

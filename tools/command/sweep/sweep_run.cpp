@@ -72,8 +72,15 @@ int run_on_slurm(const analysis::SweepFolder& folder, const SweepRunChoice& choi
     if (choice.does_not_wait) return done;
     const std::atomic<bool>& stop = run::stop_on_signals();
     LiveLine line;
+    constexpr int max_failures = 150;  // five minutes: Slurm's controller may be restarted meanwhile
+    int failures = 0;
     for (std::size_t left = 1; left > 0 && !stop;) {
-        left = analysis::elements_in_slurm(job.id);
+        try {
+            left = analysis::elements_in_slurm(job.id);
+            failures = 0;
+        } catch (const Error&) {
+            if (++failures == max_failures) throw;
+        }
         if (line.is_terminal()) {
             const std::vector<bool> finished = analysis::finished_points(folder);
             line.show(fmt::format("{} of {}; {} in the queue", std::ranges::count(finished, true),

@@ -21,6 +21,7 @@ double Scale::share(double v) const {
 
 std::vector<double> Scale::ticks() const {
     std::vector<double> all;
+    if (std::isinf(step)) return all;
     if (is_log) {
         for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high * 1.001; decade *= 10.0)
             for (const double f : {1.0, 2.0, 5.0})

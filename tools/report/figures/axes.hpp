@@ -19,7 +19,7 @@ inline constexpr display::Colour axis_ink{0x22, 0x26, 0x2E}, axis_soft{0x6B, 0x7
 struct Scale {
     double low, high;
     bool is_log;
-    double step = 0.0;  ///< between the ticks of a linear scale; 0: about five ticks
+    double step = 0.0;  ///< between the ticks of a linear scale; 0: about five ticks; infinite: no ticks
 
     double share(double v) const;  ///< 0 at `low`, 1 at `high`; a little beyond both at most
     std::vector<double> ticks() const;

@@ -38,7 +38,9 @@ std::string short_text(std::string text) {
     return text.substr(0, end) + "…";
 }
 
+/// Of a file: its name, without folder and extension.
 std::string level_text(const sweep::Axis& axis, std::size_t level) {
+    if (!axis.files.empty()) return short_text(axis.files[level].stem().string());
     return short_text(axis.has_numbers ? fmt::format("{:.4g}", axis.levels[level].number) : axis.levels[level].text);
 }
 
@@ -105,7 +107,7 @@ struct Positions {
             const double pad = has_names     ? 0.5
                                : low == high ? std::max(0.5 * std::abs(low), 1e-9)
                                              : 0.06 * (high - low);
-            scale = {low - pad, high + pad, false, has_names ? 1e9 : 0.0};
+            scale = {low - pad, high + pad, false, has_names ? HUGE_VAL : 0.0};
         }
     }
 };

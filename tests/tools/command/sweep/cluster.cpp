@@ -8,6 +8,8 @@
 
 #include <csignal>
 #include <fstream>
+#include <map>
+#include <sstream>
 
 using namespace tactus::test;
 
@@ -91,6 +93,15 @@ private:
     std::string why_;
 };
 
+bool has_slurm() {
+    for (const char* program : {"munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol"})
+        if (!has_program(program)) {
+            skip(std::string(program) + " is not installed; install slurm-wlm and munge");
+            return false;
+        }
+    return true;
+}
+
 /// Kills one process that writes to the logs.
 bool kill_a_worker(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder / "log")) {
@@ -108,12 +119,53 @@ bool kill_a_worker(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("Slurm runs a sweep through killed workers, a requeue, a cancelled array and a full disk", "[kernel][long]") {
-    for (const char* program : {"munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel"})
-        if (!has_program(program)) {
-            skip(std::string(program) + " is not installed; install slurm-wlm and munge");
-            return;
-        }
+TEST_CASE("an element of an array that Slurm requeues runs what is left of its share", "[kernel][long]") {
+    if (!has_slurm()) return;
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", two_hundred_points("sleep 0.2; "));
+    REQUIRE(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "local") + " --jobs 20").code == 0);
+    const Slurm slurm(folder);
+    if (!slurm.is_up()) {
+        skip("Slurm does not start here: " + slurm.why());
+        return;
+    }
+    REQUIRE(
+        folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --runner slurm --chunk 20 --no-wait")
+            .code == 0);
+    REQUIRE(wait_for([&] { return rows_in(folder.path / "a") > 8; }));
+    std::istringstream states(slurm.states());
+    std::string id, state;
+    while (states >> id >> state && state != "RUNNING") {
+    }
+    REQUIRE(state == "RUNNING");
+    const std::string answer = output_of(folder, "scontrol requeue " + id);
+    CAPTURE(id, answer);
+    REQUIRE(answer.empty());
+    CHECK(
+        wait_for([&] { return output_of(folder, "scontrol show job " + id).find("Restarts=1") != std::string::npos; }));
+    // Slurm holds it back for up to two minutes.
+    for (int i = 0; i < 10 && !wait_for([&] { return slurm.states().empty(); }); ++i) {
+    }
+    CAPTURE(slurm.states());
+    const SweepStatus status = status_of(folder, "a");
+    CHECK(status.done == 200);
+    CHECK(status.failed == 0);
+    CHECK(status.repeated == 0);
+    // The element has two logs, of before and after.
+    std::map<std::string, int> logs;
+    for (const auto& entry : fs::directory_iterator(folder.path / "a/log")) {
+        const std::string text = slurp(entry.path());
+        const auto worker = nlohmann::json::parse(text.substr(0, text.find('\n')))["worker"];
+        ++logs[worker["runner"].get<std::string>()];
+    }
+    CHECK(logs.size() == 10);
+    CHECK(logs["slurm " + id] == 2);
+    CHECK(folder.tactus("sweep status " + in(folder, "a") + " --tables").code == 0);
+    CHECK(results_of(folder, "a") == results_of(folder, "local"));
+}
+
+TEST_CASE("Slurm runs a sweep through killed workers, a cancelled array and a full disk", "[kernel][long]") {
+    if (!has_slurm()) return;
     const Folder folder;
     const fs::path file = folder.write("sweep.toml", two_hundred_points("sleep 0.05; "));
     REQUIRE(folder.tactus("sweep run " + file.string() + " -o " + in(folder, "local")).code == 0);
@@ -128,13 +180,6 @@ TEST_CASE("Slurm runs a sweep through killed workers, a requeue, a cancelled arr
     REQUIRE(folder.tactus(run + "--chunk 20 --no-wait").code == 0);
     REQUIRE(wait_for([&] { return rows_in(folder.path / "a") > 10; }));
     CHECK(kill_a_worker(folder.path / "a"));
-    const std::string running = slurm.states();
-    const std::size_t at = running.find(" RUNNING");
-    if (at != std::string::npos) {
-        const std::size_t begin = running.rfind('\n', at);
-        output_of(folder, "scontrol requeue " + running.substr(begin == std::string::npos ? 0 : begin + 1,
-                                                               at - (begin == std::string::npos ? 0 : begin + 1)));
-    }
     REQUIRE(wait_for([&] { return rows_in(folder.path / "a") > 40; }));
     output_of(folder, "scancel --name=tactus-sweep");
     REQUIRE(wait_for([&] { return slurm.states().empty(); }));

@@ -117,6 +117,46 @@ TEST_CASE("a worker that is killed is replaced, and its point is tried again", "
     CHECK(results_of(folder, "b") == results_of(folder, "a"));
 }
 
+TEST_CASE("a signal that reaches a worker alone ends its point, and no later one", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", R"(format = 1
+title = "Touch"
+[inputs]
+patch = "library:patches/touch-sphere.toml"
+[seeds]
+count = 4
+[[step]]
+tactus = ["render", "{inputs.patch}", "--seed", "{seed}", "--seconds", "5", "-o", "{out}/run", "--json"]
+values = {simulated = "/seconds"}
+accept = [0, 1]
+[limits]
+retries = 1
+)");
+    const std::string words = "sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 1";
+    Run run(folder, file.string() + " -o " + in(folder, "a") + " --jobs 1", "sweep run");
+    // The worker is the only child of the runner.
+    const auto workers = [&] {
+        std::vector<pid_t> found;
+        for (const auto& entry : fs::directory_iterator("/proc")) {
+            const std::string line = slurp(entry.path() / "cmdline");
+            if (line.find(file.string()) == std::string::npos || line.starts_with("sh")) continue;
+            std::istringstream status(slurp(entry.path() / "stat"));
+            std::string id, name, state;
+            pid_t parent = 0;
+            status >> id >> name >> state >> parent;
+            if (slurp("/proc/" + std::to_string(parent) + "/cmdline") == line) found.push_back(std::atoi(id.c_str()));
+        }
+        return found;
+    };
+    REQUIRE(wait_for([&] { return rows_in(folder.path / "a") >= 1 && !workers().empty(); }));
+    ::kill(workers().front(), SIGTERM);
+    CHECK(wait_for([&] { return status_of(folder, "a").done == 4; }));
+    // No truncated run counts, though exit code 1 is accepted.
+    CHECK(folder.tactus(words).code == 0);
+    CHECK(query(folder.path / "a/results.sqlite", "select simulated, count(*) from results group by simulated") ==
+          "5.0|4\n");
+}
+
 TEST_CASE("a point beyond its time or memory is ended, and the others go on", "[kernel]") {
     const Folder folder;
     const fs::path file = folder.write("sweep.toml", R"(format = 1
@@ -155,6 +195,43 @@ TEST_CASE("a verb that rejects its input is not tried again, and a program's exi
                                               more);
     CHECK(folder.tactus("sweep run " + program.string() + " -o " + in(folder, "b")).code == 1);
     CHECK(query(folder.path / "b/results.sqlite", "select attempt, state from results") == "3|failed\n");
+}
+
+TEST_CASE("a failure is shown with the step that failed, and where its JSON ends", "[kernel]") {
+    const Folder folder;
+    const fs::path file = folder.write("sweep.toml", R"(format = 1
+title = "Steps"
+[[step]]
+command = ["true"]
+[[step]]
+command = ["echo", '{{"rows": [{{"hz": 60, "db": 1}}]}}']
+values = {hz = "/rows/0/frequency"}
+[limits]
+retries = 0
+)");
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a"));
+    CHECK(run.code == 1);
+    CHECK(
+        run.out.starts_with("failed: 1 point: step 2: the JSON has no /rows/0/frequency for 'hz': /rows/0 has hz, db\n"
+                            "  such as point 1: echo "));
+}
+
+TEST_CASE("the sweeps of the library and of the how-to can be run", "[kernel]") {
+    const Folder folder;
+    for (const auto& entry : fs::directory_iterator(source_folder() / "assets/library/sweeps")) {
+        if (entry.path().extension() != ".toml") continue;
+        CAPTURE(entry.path());
+        const std::string name = entry.path().stem().string();
+        const Outcome run = folder.tactus("sweep run " + name + " -o " + in(folder, name) + " --dry-run");
+        CHECK(run.err.empty());
+        CHECK(run.code == 0);
+    }
+    const std::string page = slurp(source_folder() / "docs/how-to/sweep.md"), fence = "```toml\n";
+    const std::size_t begin = page.find(fence) + fence.size();
+    const fs::path file = folder.write("depth.toml", page.substr(begin, page.find("```", begin) - begin));
+    const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "how-to") + " --dry-run");
+    CAPTURE(run.err);
+    CHECK(run.code == 0);
 }
 
 TEST_CASE("verify ends a point that hangs, and standard input is empty", "[kernel]") {
@@ -346,6 +423,27 @@ x = "level"
     CHECK_FALSE(fs::exists(folder.path / "c.svg"));
     CHECK(folder.tactus("sweep plot " + in(folder, "a") + " --value value,drawn --x level -o " + in(folder, "d.svg"))
               .code == 0);
+    // An axis of files has their names, and no numbers.
+    folder.write("one.txt", "1");
+    folder.write("two.txt", "2");
+    const fs::path files = folder.write("files.toml", R"(format = 1
+title = "Files"
+[axes.text]
+files = "*o*.txt"
+[[step]]
+command = ["cat", "{text}"]
+values = {value = ""}
+[[figure]]
+name = "f"
+value = "value"
+x = "text"
+)");
+    CHECK(folder.tactus("sweep run " + files.string() + " -o " + in(folder, "f") + " --jobs 1").code == 0);
+    CHECK(folder.tactus("sweep plot " + in(folder, "f") + " -o " + in(folder, "f.svg")).code == 0);
+    const std::string named = slurp(folder.path / "f.svg");
+    CHECK(named.find(">one<") != std::string::npos);
+    CHECK(named.find(">two<") != std::string::npos);
+    CHECK(named.find(">0<") == std::string::npos);
     const std::string two = slurp(folder.path / "d.svg");
     CHECK(two.find(">value<") != std::string::npos);
     CHECK(two.find(">drawn<") != std::string::npos);
