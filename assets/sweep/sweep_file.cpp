@@ -509,8 +509,6 @@ std::string figure_problem(const Sweep& sweep, const FigureChoice& figure) {
     if (!figure.minus.empty() && figure.minus.size() != figure.values.size())
         return fmt::format("'minus' needs a column for each value: {} of {}", figure.minus.size(),
                            figure.values.size());
-    if (!figure.minus.empty() && figure.statistic == FigureChoice::Statistic::fraction)
-        return "a difference has no fraction; use the mean";
     if (figure.is_log && (figure.statistic == FigureChoice::Statistic::fraction || !figure.minus.empty()))
         return "fractions and differences have no logarithmic axis";
     return {};

@@ -76,7 +76,7 @@ struct FigureChoice {
     std::string x, y;  ///< axes; y: heat only
     std::string series, panel;  ///< axes: a line, and a panel, for each level
     std::string unless;  ///< column: rows where it is not 0 or false are left out
-    /// mean: t interval; fraction: Wilson interval of the share of rows with a value that is not 0
+    /// fraction: of rows with a value that is not 0
     enum class Statistic : std::uint8_t { mean, median, fraction } statistic = Statistic::mean;
     bool is_log = false;  ///< of the values
 };

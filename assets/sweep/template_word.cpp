@@ -49,8 +49,10 @@ std::string placeholder_problem(const Sweep& sweep, const std::string& name) {
         for (const std::string& column : axis.columns) known.push_back(axis.name + "." + column);
     }
     if (std::ranges::find(known, name) != known.end()) return {};
-    return fmt::format("'{{{}}}' is no axis, input or other name of this sweep{}; it has {{{}}}", name,
-                       did_you_mean(name, known), fmt::join(known, "}, {"));
+    return fmt::format(
+        "'{{{}}}' is no axis, input or other name of this sweep{}; it has {{{}}}; braces themselves are '{{{{' and "
+        "'}}}}'",
+        name, did_you_mean(name, known), fmt::join(known, "}, {"));
 }
 
 std::string fill_word(std::string_view word, const std::function<std::string(const std::string& name)>& value) {

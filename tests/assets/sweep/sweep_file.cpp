@@ -286,7 +286,6 @@ TEST_CASE("a figure that contradicts itself is refused") {
         {"value = [\"u\", \"v\"]\nx = \"a\"\ny = \"b\"\nkind = \"heat\"\n", "shows one value"},
         {"value = [\"u\", \"v\"]\nx = \"a\"\nseries = \"b\"\n", "a line each"},
         {"value = [\"u\", \"v\"]\nminus = \"u\"\nx = \"a\"\n", "a column for each value: 1 of 2"},
-        {"value = \"u\"\nminus = \"v\"\nx = \"a\"\nstatistic = \"fraction\"\n", "has no fraction"},
         {"value = \"u\"\nx = \"a\"\nstatistic = \"mode\"\n", "median"},
         {"value = \"u\"\nminus = \"v\"\nx = \"a\"\nlog = true\n", "no logarithmic axis"},
     };

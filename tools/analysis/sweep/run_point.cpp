@@ -150,6 +150,11 @@ public:
         reset_peak();
         try {
             for (std::size_t s = 0; s < sweep_.steps.size() && row_.reason.empty(); ++s) run_step(s);
+            // Also when a step failed: perhaps for this reason.
+            if (const fs::path changed = context_.folder->changed_file(point_); !changed.empty())
+                row_.reason =
+                    fmt::format("{} has changed since the sweep was prepared; 'tactus sweep run' again follows it",
+                                changed.string());
             if (row_.reason.empty()) publish_files();
             row_.is_ok = row_.reason.empty();
         } catch (const std::exception& error) {

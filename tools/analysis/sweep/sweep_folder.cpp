@@ -29,47 +29,6 @@ using file::Json;
 
 namespace {
 
-/// Hashes of files, which are read again only if their size or time has changed.
-class KnownHashes {
-public:
-    explicit KnownHashes(const Json& known) {
-        if (!known.is_object()) return;
-        for (const auto& [path, entry] : known.items())
-            if (entry.is_array() && entry.size() == 3 && entry[2].is_string())
-                if (const auto hash = sweep::id_of_text(entry[2].as_text()))
-                    known_[path] = {entry[0].get<std::int64_t>(), entry[1].get<std::int64_t>(), *hash};
-    }
-
-    std::uint64_t operator()(const fs::path& path) {
-        // A patch depends on other files.
-        if (path.extension() == ".toml") return hash_of_input(path);
-        struct stat status{};
-        if (::stat(path.c_str(), &status) != 0)
-            throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-        Entry entry{status.st_size, status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec, 0};
-        const auto known = known_.find(path.string());
-        entry.hash = known != known_.end() && known->second.size == entry.size && known->second.time == entry.time
-                         ? known->second.hash
-                         : hash_of_input(path);
-        used_[path.string()] = entry;
-        return entry.hash;
-    }
-
-    Json json() const {
-        Json all = Json::object();
-        for (const auto& [path, entry] : used_)
-            all[path] = Json::array({entry.size, entry.time, sweep::text_of_id(entry.hash)});
-        return all;
-    }
-
-private:
-    struct Entry {
-        std::int64_t size = 0, time = 0;
-        std::uint64_t hash = 0;
-    };
-    std::map<std::string, Entry> known_, used_;
-};
-
 Json read_state(const fs::path& folder) {
     const fs::path path = folder / "sweep.json";
     const Json json = Json::parse_or_null(file::read_whole_file(path));
@@ -79,6 +38,79 @@ Json read_state(const fs::path& folder) {
 }
 
 }  // namespace
+
+/// Hashes of files, which are read again only if their size or time has changed.
+class SweepFolder::KnownHashes {
+public:
+    explicit KnownHashes(const Json& known) {
+        if (!known.is_object()) return;
+        for (const auto& [path, entry] : known.items())
+            if (entry.is_array() && entry.size() == 3 && entry[2].is_string())
+                if (const auto hash = sweep::id_of_text(entry[2].as_text()))
+                    known_[path] = {{entry[0].get<std::int64_t>(), entry[1].get<std::int64_t>()}, *hash};
+    }
+
+    std::uint64_t operator()(const fs::path& path) {
+        // Before it is read: a change meanwhile is noticed when its points run.
+        Entry entry{stamp_of(path), 0};
+        const auto known = known_.find(path.string());
+        // A patch depends on other files.
+        const bool is_known =
+            path.extension() != ".toml" && known != known_.end() && known->second.stamp == entry.stamp;
+        entry.hash = is_known ? known->second.hash : hash_of_input(path);
+        used_[path.string()] = entry;
+        return entry.hash;
+    }
+
+    Stamp stamp(const fs::path& path) const { return used_.at(path.string()).stamp; }
+    Json json() const {
+        Json all = Json::object();
+        for (const auto& [path, entry] : used_)
+            all[path] = Json::array({entry.stamp.size, entry.stamp.time, sweep::text_of_id(entry.hash)});
+        return all;
+    }
+
+private:
+    struct Entry {
+        Stamp stamp;
+        std::uint64_t hash = 0;
+    };
+    std::map<std::string, Entry> known_, used_;
+};
+
+SweepFolder::Stamp SweepFolder::stamp_of(const fs::path& path) {
+    struct stat status{};
+    if (::stat(path.c_str(), &status) != 0)
+        throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+    return {status.st_size, status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec};
+}
+
+void SweepFolder::keep_stamps(const KnownHashes& hashes) {
+    for (const auto& [name, path] : sweep_.inputs) input_stamps_.emplace_back(path, hashes.stamp(path));
+    for (const sweep::Axis& axis : sweep_.axes) {
+        axis_stamps_.emplace_back();
+        for (const fs::path& path : axis.files) axis_stamps_.back().push_back(hashes.stamp(path));
+    }
+}
+
+fs::path SweepFolder::changed_file(const sweep::Point& point) const {
+    const auto is_changed = [](const fs::path& path, const Stamp& stamp) {
+        try {
+            return stamp_of(path) != stamp;
+        } catch (const Error&) {
+            return true;
+        }
+    };
+    for (const auto& [path, stamp] : input_stamps_)
+        if (is_changed(path, stamp)) return path;
+    for (std::size_t a = 0; a < axis_stamps_.size(); ++a) {
+        if (axis_stamps_[a].empty()) continue;
+        const std::size_t level = point.levels[a];
+        const fs::path& path = sweep_.axes[a].files[level];
+        if (is_changed(path, axis_stamps_[a][level])) return path;
+    }
+    return {};
+}
 
 bool is_sweep_folder(const fs::path& folder) {
     std::error_code ignored;
@@ -118,6 +150,7 @@ SweepFolder::SweepFolder(const fs::path& file, const fs::path& folder, const fs:
     const Json* files = before.find("files");
     KnownHashes hashes(files ? *files : Json());
     tasks_ = std::make_unique<sweep::TaskList>(sweep_, std::ref(hashes));
+    keep_stamps(hashes);
     fs::create_directories(path_ / "log", failure);
     if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", path_.string(), failure.message()));
     const Json state{{"format", sweep::sweep_format},
@@ -141,6 +174,7 @@ SweepFolder::SweepFolder(const fs::path& folder, const fs::path& library)
     const Json* files = state.find("files");
     KnownHashes hashes(files ? *files : Json());
     tasks_ = std::make_unique<sweep::TaskList>(sweep_, std::ref(hashes));
+    keep_stamps(hashes);
     if (sweep::text_of_id(tasks_->hash()) != state["list"].as_text())
         throw Error(
             fmt::format("{}: an input of the sweep, or the files of an axis, have changed since it was prepared; "

@@ -14,10 +14,13 @@
 #include "assets/sweep/sweep_file.hpp"
 #include "assets/sweep/task_list.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace tactus::analysis {
 
@@ -38,11 +41,24 @@ public:
     const sweep::TaskList& tasks() const { return *tasks_; }
     /// Folder of the kept files of a point.
     std::filesystem::path files_of(std::uint64_t id) const;
+    /// An input or a file of the point's levels whose size or time is no longer that of the hashed file: a result of the
+    /// point would carry the name of other contents. Empty: none.
+    std::filesystem::path changed_file(const sweep::Point& point) const;
 
 private:
+    struct Stamp {
+        std::int64_t size = 0, time = 0;  ///< bytes, ns
+        bool operator==(const Stamp&) const = default;
+    };
+    class KnownHashes;
+    static Stamp stamp_of(const std::filesystem::path& path);
+    void keep_stamps(const KnownHashes& hashes);
+
     std::filesystem::path path_;
     sweep::Sweep sweep_;
     std::unique_ptr<sweep::TaskList> tasks_;
+    std::vector<std::pair<std::filesystem::path, Stamp>> input_stamps_;
+    std::vector<std::vector<Stamp>> axis_stamps_;  ///< by axis and level; empty for axes without files
 };
 
 /// True if the folder has been prepared.

@@ -31,8 +31,31 @@ std::optional<double> number_of(const sweep::Row& row, const std::string& name) 
     return value->get<double>();
 }
 
-void summarise(FigureCell& cell, std::vector<double>& values, FigureChoice::Statistic statistic) {
-    cell.count = values.size();
+/// A value of a row, and what is subtracted from it; 0 for figures that subtract nothing.
+struct PairedValue {
+    double value = 0.0, minus = 0.0;
+};
+
+void summarise_difference_of_fractions(FigureCell& cell, const std::vector<PairedValue>& rows) {
+    statistics::PairedOutcomes pairs;
+    for (const PairedValue& row : rows)
+        ++(row.value != 0.0   ? row.minus != 0.0 ? pairs.both : pairs.first_only
+           : row.minus != 0.0 ? pairs.second_only
+                              : pairs.neither);
+    cell.value = (static_cast<double>(pairs.first_only) - static_cast<double>(pairs.second_only)) /
+                 static_cast<double>(rows.size());
+    cell.interval = statistics::paired_difference_interval(pairs);
+}
+
+void summarise(FigureCell& cell, const std::vector<PairedValue>& rows, const FigureChoice& choice) {
+    const FigureChoice::Statistic statistic = choice.statistic;
+    cell.count = rows.size();
+    if (statistic == FigureChoice::Statistic::fraction && !choice.minus.empty()) {
+        summarise_difference_of_fractions(cell, rows);
+        return;
+    }
+    std::vector<double> values;
+    for (const PairedValue& row : rows) values.push_back(row.value - row.minus);
     const double n = static_cast<double>(values.size());
     if (statistic == FigureChoice::Statistic::fraction) {
         const auto hits = static_cast<std::size_t>(std::ranges::count_if(values, [](double v) { return v != 0.0; }));
@@ -101,7 +124,7 @@ FigureData figure_data(const Results& results, const FigureChoice& choice) {
     }
     using Key = std::array<std::size_t, 5>;  // panel, series, column, y, x
     constexpr std::array<std::size_t, 4> at_key{0, 1, 3, 4};
-    std::map<Key, std::vector<double>> groups;
+    std::map<Key, std::vector<PairedValue>> groups;
     for (std::size_t index = 0; index < results.size(); ++index) {
         if (results.state(index) != Results::State::done) continue;
         const sweep::Row row = results.row(index);
@@ -111,27 +134,25 @@ FigureData figure_data(const Results& results, const FigureChoice& choice) {
         for (std::size_t i = 0; i < places.size(); ++i)
             if (places[i]) key[at_key[i]] = point.levels[*places[i]];
         for (std::size_t column = 0; column < choice.values.size(); ++column) {
-            std::optional<double> value = number_of(row, choice.values[column]);
-            if (!choice.minus.empty()) {
-                const std::optional<double> minus = number_of(row, choice.minus[column]);
-                value = value && minus ? std::optional(*value - *minus) : std::nullopt;
-            }
-            if (is_excluded || !value || !std::isfinite(*value)) {
+            const std::optional<double> value = number_of(row, choice.values[column]),
+                                        minus = choice.minus.empty() ? std::optional(0.0)
+                                                                     : number_of(row, choice.minus[column]);
+            if (is_excluded || !value || !minus || !std::isfinite(*value - *minus)) {
                 ++data.left_out;
                 continue;
             }
             key[2] = column;
-            groups[key].push_back(*value);
+            groups[key].push_back({*value, *minus});
         }
     }
-    for (auto& [key, values] : groups) {
+    for (const auto& [key, rows] : groups) {
         FigureCell cell;
         cell.panel = key[0];
         cell.series = key[1];
         cell.column = key[2];
         cell.y = key[3];
         cell.x = key[4];
-        summarise(cell, values, choice.statistic);
+        summarise(cell, rows, choice);
         data.cells.push_back(cell);
     }
     return data;

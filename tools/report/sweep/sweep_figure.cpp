@@ -67,7 +67,9 @@ std::string heading(const FigureData& data) {
 }
 
 std::string note(const FigureData& data) {
-    const char* interval = data.choice.statistic == FigureChoice::Statistic::fraction ? "Wilson"
+    const bool is_fraction = data.choice.statistic == FigureChoice::Statistic::fraction;
+    const char* interval = is_fraction && !data.choice.minus.empty()                  ? "Newcombe"
+                           : is_fraction                                              ? "Wilson"
                            : data.choice.statistic == FigureChoice::Statistic::median ? "order statistics"
                                                                                       : "t";
     std::size_t least = SIZE_MAX, most = 0;
@@ -121,7 +123,8 @@ struct Range {
 };
 
 Scale value_scale(const FigureData& data) {
-    if (data.choice.statistic == FigureChoice::Statistic::fraction) return {0.0, 1.0, false, 0.25};
+    const bool is_difference = !data.choice.minus.empty();
+    if (data.choice.statistic == FigureChoice::Statistic::fraction && !is_difference) return {0.0, 1.0, false, 0.25};
     Range range;
     for (const FigureCell& cell : data.cells)
         for (const double v : {cell.value, cell.interval ? cell.interval->first : cell.value,
@@ -131,7 +134,7 @@ Scale value_scale(const FigureData& data) {
         if (range.low > range.high) throw Error("a logarithmic figure needs values above 0");
         return {range.low / 1.3, range.high * 1.3, true};
     }
-    if (!data.choice.minus.empty()) range.add(0.0);
+    if (is_difference) range.add(0.0);
     const double pad =
         range.low == range.high ? std::max(0.1 * std::abs(range.low), 1e-9) : 0.06 * (range.high - range.low);
     return {range.low - pad, range.high + pad, false};
@@ -225,7 +228,7 @@ Figure draw_heat(const FigureData& data) {
     for (const FigureCell& cell : data.cells)
         if (!data.choice.is_log || cell.value > 0.0) range.add(cell.value);
     if (range.low > range.high) throw Error("a logarithmic figure needs values above 0");
-    if (data.choice.statistic == FigureChoice::Statistic::fraction) range = {0.0, 1.0};
+    if (data.choice.statistic == FigureChoice::Statistic::fraction && data.choice.minus.empty()) range = {0.0, 1.0};
     const bool is_log = data.choice.is_log;
     const auto share = [&](double v) {
         if (range.low == range.high) return 0.5;

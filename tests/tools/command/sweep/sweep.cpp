@@ -423,6 +423,11 @@ x = "level"
     CHECK_FALSE(fs::exists(folder.path / "c.svg"));
     CHECK(folder.tactus("sweep plot " + in(folder, "a") + " --value value,drawn --x level -o " + in(folder, "d.svg"))
               .code == 0);
+    CHECK(folder
+              .tactus("sweep plot " + in(folder, "a") +
+                      " --value value --minus drawn --x level --statistic fraction -o " + in(folder, "e.svg"))
+              .code == 0);
+    CHECK(slurp(folder.path / "e.svg").find("95 % (Newcombe)") != std::string::npos);
     // An axis of files has their names, and no numbers.
     folder.write("one.txt", "1");
     folder.write("two.txt", "2");
@@ -477,6 +482,18 @@ TEST_CASE("a folder follows its sweep file, and refuses inputs that have changed
     CHECK(folder.tactus("sweep run " + other.string() + " -o " + in(folder, "b")).code == 0);
     CHECK(status_of(folder, "b").done == 1);
     CHECK(rows_in(folder.path / "b") == 2);
+    // One that changes while the sweep runs: no row has the name of other contents.
+    folder.write("input.txt", "1");
+    const fs::path during =
+        folder.write("during.toml",
+                     "format = 1\ntitle = \"During\"\n[inputs]\nname = \"input.txt\"\n[seeds]\ncount "
+                     "= 4\n[[step]]\ncommand = [\"sh\", \"-c\", \"cat $0; test $1 != 2 || echo more >>$0\", "
+                     "\"{inputs.name}\", \"{seed}\"]\nvalues = {seen = \"\"}\n[limits]\nretries = 0\n");
+    const Outcome changed = folder.tactus("sweep run " + during.string() + " -o " + in(folder, "d") + " --jobs 1");
+    CHECK(changed.code == 1);
+    CHECK(changed.out.find("input.txt has changed since the sweep was prepared") != std::string::npos);
+    CHECK(query(folder.path / "d/results.sqlite", "select count(*) from results where state = 'done' and seen <> 1") ==
+          "0\n");
     // A folder of something else.
     fs::create_directories(folder.path / "c");
     folder.write("c/mine.txt", "mine");
