@@ -4,6 +4,7 @@
 #include "devices/display/figure_painter.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/compile_nodes.hpp"
+#include "tests/support/places.hpp"
 #include "tools/run/load_plan.hpp"
 
 #include <cmath>
@@ -70,7 +71,7 @@ TEST_CASE("a name too long for its box is set smaller, and cut when that is not 
 TEST_CASE("labels of wires do not overlap, however many wires end at a node") {
     for (const char* name : {"saw-guide", "saw-training", "planning-trauma"}) {
         run::PatchChoice choice;
-        choice.patch = name;
+        choice.patch = (test::library_folder() / "patches" / name).string() + ".toml";
         patch::Problems problems;
         const std::optional<compile::Schedule> plan = run::read_plan(choice, problems);
         REQUIRE(plan);

@@ -178,8 +178,15 @@ TEST_CASE("figures in the style of a journal are 85 mm wide, and no text is belo
         both.push_back(0.5 * v);
     }
     folder.sound("a.wav", both, 2, 4000);
+    std::vector<double> faster;  // from 100 to 140 Hz
+    for (int i = 0; i < 16000; ++i) {
+        const double t = i / 4000.0, turns = 100.0 * t + 5.0 * t * t;
+        faster.push_back(0.4 * std::sin(2.0 * std::numbers::pi * turns) +
+                         0.2 * std::sin(4.0 * std::numbers::pi * turns));
+    }
+    folder.sound("faster.wav", faster, 1, 4000);
     for (const char* command : {"response a.wav", "orders a.wav --rate 100 --waterfall w.csv --over frequency",
-                                "orders a.wav --rate 100 --waterfall w.csv --against speed"}) {
+                                "orders faster.wav --band 80:160 --waterfall w.csv --against speed"}) {
         CAPTURE(command);
         REQUIRE(folder.tactus(fmt::format("{} --quiet --style journal -o f.svg -o f.png", command)).code == 0);
         const std::string svg = slurp(folder.path / "f.svg");
