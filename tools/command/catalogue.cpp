@@ -5,6 +5,7 @@
 // name, folder, heading of the help text
 #define TACTUS_VERBS(X)                  \
     X(new, run, run_and_patch)           \
+    X(try, run, run_and_patch)           \
     X(run, run, run_and_patch)           \
     X(render, run, run_and_patch)        \
     X(check, run, run_and_patch)         \
@@ -130,7 +131,14 @@ const Verbs& all_verbs() {
 #define TACTUS_LIST(name, folder) name##_verb(),
 
 Program tactus_program() {
-    return {"tactus", "Tactus: patches of nodes for haptics, from 60 Hz to audio rate", all_verbs()};
+    return {"tactus", "Tactus: patches of nodes for haptics, from 60 Hz to audio rate", all_verbs(),
+            "Tactus: patches of nodes for haptics, from 60 Hz to audio rate.\n"
+            "\n"
+            "  tactus try                            saw a jaw with the mouse, in a window with sound\n"
+            "  tactus view                           the window: choose an example, a patch, a plan or a take\n"
+            "  tactus render saw-training --out DIR  the same without window, mouse and sound card: files and numbers\n"
+            "  tactus new my-patch.toml              begin a patch of your own\n"
+            "  tactus --help                         all verbs; 'tactus VERB --help' explains one\n"};
 }
 
 const Verbs& plan_verbs() {

@@ -105,6 +105,10 @@ int command_line(const Program& program, int argc, char** argv) {
     CLI::App app{program.about, program.name};
     DeclaredVerbs declared;
     try {
+        if (argc <= 1 && program.first_steps) {
+            say(stdout, program.first_steps);
+            return done;
+        }
         declare(app, program, declared);
         std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
         bring_forward_nodes(words);

@@ -112,6 +112,7 @@ struct Program {
     const char* name;
     const char* about;
     const Verbs& verbs;
+    const char* first_steps = nullptr;  ///< printed when there are no arguments; null: an error then
 };
 
 /// "tactus 0.1.0, Release, GCC 12.2.0": version, build type and compiler.

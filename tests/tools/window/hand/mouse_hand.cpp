@@ -117,6 +117,17 @@ close
     CHECK(again.code == 0);
 }
 
+TEST_CASE("'try' runs the saw in a window with the mouse as hand", "[display][slow]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    const Outcome tried = on(display, folder, "try --seconds 2 --out tried");
+    INFO(tried.out << tried.err);
+    CHECK(tried.code == 0);
+    const json summary = json::parse(slurp(folder.path / "tried/summary.json"));
+    CHECK(summary["patch"] == "Saw training");
+    CHECK(summary["force"]["felt_mean_N"] == 0.0);  // the hand rests, and nobody feels the force of a mouse
+}
+
 TEST_CASE("a mouse needs a window", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
