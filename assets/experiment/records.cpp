@@ -117,8 +117,10 @@ ExperimentFile load_experiment_file(const fs::path& path) {
             if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
                 throw Error(fmt::format("the file '{}' is outside of the folder", name.string()));
         }
-        for (const Json& one : json["assets"])
-            experiment.assets.push_back({one["name"].get<std::string>(), one["hash"].get<std::string>()});
+        // Folders of before assets were hashed have none.
+        if (json.contains("assets"))
+            for (const Json& one : json["assets"])
+                experiment.assets.push_back({one["name"].get<std::string>(), one["hash"].get<std::string>()});
         for (const Json& one : json["subjects"]) {
             // A folder is named by it.
             const std::string who = one["pseudonym"].get<std::string>();

@@ -64,7 +64,7 @@ struct ExperimentFile {
     std::string name;
     std::string protocol;  ///< path as it was run first
     std::vector<FrozenFile> files;  ///< copied into the folder
-    std::vector<FrozenFile> assets;  ///< bones, sounds and others that the patches load: too large to be copied
+    std::vector<FrozenFile> assets;  ///< bones, sounds and others that the patches load: hashed, too large to be copied
     std::vector<SubjectEntry> subjects;
     std::vector<std::size_t> freed_rows;  ///< of subjects who withdrew; the next ones inherit them
 };

@@ -92,8 +92,8 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::st
         const std::string_view why = sf_strerror(nullptr);
         // What libsndfile says of headers without a rate, and of chunks that follow each other in no known order.
         if (why.starts_with("Internal error")) fail("cannot be read as sound: its header is damaged");
-        // Its first bytes are of no format, and the ending of its name is of one that has no first bytes of its own.
-        if (why.starts_with("File does not exist")) fail("cannot be read as sound: it holds none of a known format");
+        // libsndfile recognises neither the content nor the extension.
+        if (why.starts_with("File does not exist")) fail("cannot be read as sound: not a sound file of a known format");
         fail(fmt::format("cannot be read as sound: {}", why));
     }
     if (info.frames <= 0) fail("the sound is empty");

@@ -27,7 +27,7 @@ struct Row {
     bool is_ok = false;
     std::uint64_t output = 0;  ///< hash of all that was kept
     std::string reason;  ///< of a failure, for people
-    int step = 0;  ///< that failed, from 1; 0: none, or its worker ended
+    int step = 0;  ///< number of the failed step, from 1; 0 if no step failed or the worker ended
     int exit_code = 0;  ///< of that step
     int signal = 0;  ///< that ended that step, or the worker; 0: none
     double seconds = 0.0;  ///< wall time

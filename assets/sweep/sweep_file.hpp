@@ -105,7 +105,7 @@ struct Sweep {
     std::vector<std::string> value_names() const;
 };
 
-/// Why the sweep cannot have this figure: a column or axis that it lacks, or keys that exclude each other. Empty: it can.
+/// Error text if the figure does not fit the sweep (missing columns or axes, keys that exclude each other); empty if it does.
 std::string figure_problem(const Sweep& sweep, const FigureChoice& figure);
 
 /// Reads and checks. `folder`: relative names are below it (empty: the folder of the file). `library`: replaces

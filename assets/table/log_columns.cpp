@@ -215,7 +215,7 @@ private:
         }
     }
 
-    /// A column of row numbers is no vibration.
+    /// Row counters are not measurements.
     bool counts_rows(std::size_t i) const {
         constexpr std::array<std::string_view, 18> names{"sample",       "samples",    "sample number",
                                                          "sample no",    "sample no.", "sample index",
@@ -223,7 +223,8 @@ private:
                                                          "frame number", "packet",     "counter",
                                                          "seq",          "sequence",   "no",
                                                          "no.",          "nr",         "#"};
-        return shape_.header_line > 0 && std::ranges::find(names, lower(out_.named[i].name)) != names.end();
+        return shape_.header_line > 0 && !out_.named[i].unit &&
+               std::ranges::find(names, lower(out_.named[i].name)) != names.end();
     }
 
     /// "channel" of "Channel 3"; empty for names without a number at their end, and for numbers alone.
@@ -236,15 +237,20 @@ private:
     void choose_values() {
         for (const std::string& wanted : selection_.columns) out_.values.push_back(find(wanted, "column"));
         if (!out_.values.empty()) return;
-        std::vector<std::size_t> numbers, accelerations;
+        std::vector<std::size_t> numbers, accelerations, counters;
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
             if (i == out_.time || shape_.kinds[i] != CellKind::number) continue;
-            if (is_clock(i) || counts_rows(i)) continue;
+            if (is_clock(i)) continue;
+            if (counts_rows(i)) {
+                counters.push_back(i);
+                continue;
+            }
             numbers.push_back(i);
             const auto& unit = out_.named[i].unit;
             if (unit ? unit->is_acceleration() : lower(out_.named[i].name).starts_with("acc"))
                 accelerations.push_back(i);
         }
+        if (numbers.empty()) numbers = counters;
         out_.values = numbers.size() == 1 ? numbers : axes();
         if (out_.values.empty()) out_.values = accelerations;
         if (out_.values.empty() && !numbers.empty() && std::ranges::all_of(numbers, [&](std::size_t i) {

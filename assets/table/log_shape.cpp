@@ -285,7 +285,7 @@ private:
             const bool bracket =
                 (field.front() == '[' && field.back() == ']') || (field.front() == '(' && field.back() == ')');
             const bool unit = parse_column_unit(as_utf8(field)).has_value();
-            // The last four stand in front of the units, where rows have no number.
+            // The last four label a row of units.
             constexpr std::array<std::string_view, 14> words{"counts", "count", "raw",     "lsb",      "%",
                                                              "1",      "degc",  "°c",      "c",        "sequence",
                                                              "unit",   "units", "einheit", "einheiten"};

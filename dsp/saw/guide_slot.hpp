@@ -43,8 +43,8 @@ public:
     SlotHold(const SawShape& shape, const SlotSettings& settings);
 
     /// One tick of `dt` s. The nearest slot holds the blade from when it is entered, with the blade between its walls, until
-    /// no part of the blade is left between them. Its force then fades over 50 ms. Without slots, a slot that holds the blade lets
-    /// it go in the same way. Allocates nothing.
+    /// no part of the blade is left between them. Its force then fades over 50 ms. If no slots are given, the blade is
+    /// released in the same way. Allocates nothing.
     const Pose& follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept;
     /// The hand jumped: without a fade.
     void drop() noexcept { *this = SlotHold(shape_, settings_); }

@@ -70,8 +70,7 @@ inline double angle_between_planes(const Vec3& a, const Vec3& b) noexcept {
     return std::atan2(glm::length(glm::cross(a, b)), std::abs(glm::dot(a, b)));
 }
 
-/// Index of the cut that a blade makes; at least one cut. Where two planes cross, its angle decides: by an angle its parts
-/// are as far from the plane as the angle times 10 mm.
+/// Index of the cut that a blade makes; at least one cut. Where two planes cross, the angle decides: 1 rad counts as 10 mm.
 inline std::size_t nearest_cut(std::span<const PlannedCut> cuts, const Pose& blade) noexcept {
     constexpr double lever = 10e-3;  // m
     const Vec3 normal = blade.rotate(Vec3(0.0, 0.0, 1.0));

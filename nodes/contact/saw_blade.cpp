@@ -95,10 +95,10 @@ struct SawBlade {
         // Teeth resolve 0.15 of a voxel (0.08 mm at 0.5 mm): on a stiffer tool the force would step by over 3 N.
         for (const auto& [name, given] : {std::pair{"stiffness", &stiffness}, {"guide_stiffness", &guide_stiffness}})
             if ((given == &stiffness || guide) && *given * device_scale > max_felt_stiffness)
-                setup.fail(
-                    fmt::format("the hand would feel {:.3g} N/mm, '{}' times 'device_scale', and in it the voxels "
-                                "of the bone as jumps; at most {:.3g} N/mm",
-                                *given * device_scale * 1e-3, name, max_felt_stiffness * 1e-3));
+                setup.fail(fmt::format(
+                    "'{}' times 'device_scale' is {:.3g} N/mm; above {:.3g} N/mm the voxels of the bone are felt "
+                    "as steps",
+                    name, *given * device_scale * 1e-3, max_felt_stiffness * 1e-3));
         saw::SawShape shape;
         shape.kind = sagittal ? saw::SawKind::sagittal : saw::SawKind::reciprocating;
         shape.length = length;

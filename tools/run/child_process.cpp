@@ -53,7 +53,7 @@ Capture::~Capture() { ::close(handle_); }
 std::string Capture::text() const {
     const off_t size = ::lseek(handle_, 0, SEEK_END);
     if (size < 0 || static_cast<std::size_t>(size) > max_output)
-        throw Error(fmt::format("the step wrote {} MB", size >> 20));
+        throw Error(fmt::format("the program wrote {} MB; the limit is {} MB", size >> 20, max_output >> 20));
     std::string text(static_cast<std::size_t>(size), '\0');
     std::size_t got = 0;
     while (got < text.size()) {

@@ -40,8 +40,8 @@ struct ProcessLimits {
     const std::atomic<bool>* stop = nullptr;  ///< ends it when set
 };
 
-/// Runs a program, found by PATH, in `folder` (empty: the current one), with no standard input. It is ended with this
-/// process. With limits it has a process group of its own, which is killed as a whole. Throws Error if no process can be
+/// Runs a program, found by PATH, in `folder` (empty: the current one), with no standard input. It is killed when this
+/// process ends. With limits it has a process group of its own, which is killed as a whole. Throws Error if no process can be
 /// made.
 Finished run_process(const std::vector<std::string>& words, const std::filesystem::path& folder, const Capture& out,
                      const Capture& err, const ProcessLimits& limits = {});

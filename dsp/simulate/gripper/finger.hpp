@@ -20,7 +20,7 @@ struct Squeeze {
     double from = 0.5, until = 1e9;  ///< s
     double travel = 0.0;             ///< m
     double rise = 0.4;  ///< s, duration of closing and opening
-    double period = 0.0;  ///< s, after which it begins again; 0: once. Greater than `until` and `rise` together
+    double period = 0.0;  ///< s, repetition period; 0: once. At least `until` + `rise`
 
     double at(double time) const noexcept {
         if (period > 0.0 && time > 0.0) time = std::fmod(time, period);

@@ -90,7 +90,7 @@ TEST_CASE("a saw that would feel stiffer than 40 N per mm is refused, and a scal
         node->set("stiffness", "20 N/mm").set("device_scale", scale);
         return node;
     };
-    CHECK_THROWS_WITH(saw("2.1")->prepare(), Catch::Matchers::ContainsSubstring("at most 40 N/mm"));
+    CHECK_THROWS_WITH(saw("2.1")->prepare(), Catch::Matchers::ContainsSubstring("above 40 N/mm"));
     const auto allowed = saw("2"), later = saw("1");
     allowed->prepare();
     later->prepare();

@@ -242,7 +242,7 @@ TEST_CASE("the JSON of analyses of records follows their schemas") {
         const test::RecordOutcome outcome = folder.tactus(fmt::format("{} {} --json", one.verb, one.options));
         CAPTURE(one.verb, one.options, outcome.err);
         REQUIRE(outcome.code == one.code);
-        if (outcome.out.empty()) continue;
+        if (outcome.code == 2 && outcome.out.empty()) continue;
         const json schema = json::parse(test::slurp(folder.path / fmt::format("schemas/{}.schema.json", one.verb)));
         CHECK(broken_rule(schema, outcome.answer(), one.verb) == "");
     }

@@ -229,15 +229,15 @@ Inspection inspect_mesh(const std::filesystem::path& path, const std::optional<s
         // Against the largest: the hollow of a body that is around it.
         const bool is_inner = part.volume_mm3 != 0.0 && (part.volume_mm3 > 0.0) != looks_outwards;
         inner += is_inner;
-        part.name = fmt::format("part {}{}", n + 1, is_inner ? ", a shell that looks inwards" : "");
+        part.name = fmt::format("part {}{}", n + 1, is_inner ? ", an inward-facing shell" : "");
         part.volume_mm3 = std::abs(part.volume_mm3);
     }
     if (found.parts.size() > max_parts) found.parts.resize(max_parts);
     found.notes = origin.notes;
     if (inner > 0)
         found.notes.push_back(
-            fmt::format("{} shell{} inwards; 'tactus import' takes such a shell as a hollow of the body around it",
-                        inner, inner == 1 ? " looks" : "s look"));
+            fmt::format("{} inward-facing shell{}; 'tactus import' treats {} as a cavity of the surrounding body",
+                        inner, inner == 1 ? "" : "s", inner == 1 ? "it" : "each"));
     found.notes.push_back(fmt::format("{} points, {} triangles; coordinates {}", mesh.vertices.size(),
                                       mesh.triangles.size(),
                                       given                         ? "in " + *given

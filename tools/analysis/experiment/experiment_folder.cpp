@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/experiment/experiment_folder.hpp"
 
+#include "assets/bone/bone.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
+#include "engine/take/take_writer.hpp"
 #include "graph/patch/patch.hpp"
 #include "graph/patch/sub_patch.hpp"
 
@@ -52,8 +54,7 @@ UsedFiles used_files(const Protocol& protocol) {
         patch::read_parts(loaded);
         for (const fs::path& part : patch::part_files(loaded)) add(used.texts, fs::absolute(part).lexically_normal());
         for (const patch::PatchAsset& asset : loaded.assets) {
-            const std::string path = asset.path.string();
-            add(used.assets, fs::absolute(path.substr(0, path.find('#'))).lexically_normal());
+            add(used.assets, fs::absolute(bone::file_of_bone(asset.path)).lexically_normal());
         }
     };
     add_patch(protocol.patch);
@@ -64,10 +65,12 @@ UsedFiles used_files(const Protocol& protocol) {
     return used;
 }
 
+/// With the sounds of a recording set, and what a task names beside it.
 std::vector<FrozenFile> hashes_of(const std::vector<fs::path>& assets, const Protocol& protocol) {
     std::vector<FrozenFile> hashes;
     for (const fs::path& file : assets)
-        hashes.push_back({file.lexically_relative(protocol.file.parent_path()).string(), hash_of(file)});
+        hashes.push_back({file.lexically_relative(protocol.file.parent_path()).string(),
+                          fmt::format("{:016x}", take::hash_of_asset(file))});
     return hashes;
 }
 
@@ -198,6 +201,8 @@ void ExperimentFolder::check_frozen(const Protocol& protocol) const {
     for (const FrozenFile& one : now)
         if (std::ranges::find(file_.files, one.name, &FrozenFile::name) == file_.files.end())
             refuse(fmt::format("it now names {}", one.name));
+    // Folders of before assets were hashed have none.
+    if (file_.assets.empty()) return;
     const std::vector<FrozenFile> assets = hashes_of(used.assets, protocol);
     for (const FrozenFile& before : file_.assets) {
         const auto found = std::ranges::find(assets, before.name, &FrozenFile::name);

@@ -64,6 +64,7 @@ struct CheckedSchedule {
 };
 
 struct PatchCheck {
+    std::string patch;  ///< as it was given
     std::vector<Error> errors;
     std::vector<CheckedGroup> groups;
     std::vector<CheckedPath> paths;

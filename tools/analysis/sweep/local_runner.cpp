@@ -397,7 +397,9 @@ private:
     /// `line`: as the worker wrote it; empty: written here.
     void settle(const Task& task, const Row& row, const std::string& line) {
         largest_peak_ = std::max(largest_peak_, row.peak);
-        if (is_being_ended(row)) return;
+        // A verb that succeeded did not meet the signal; of a program its exit code may hide it.
+        const bool is_certain = row.is_ok && std::ranges::all_of(folder_.sweep().steps, &sweep::Step::is_own);
+        if (!is_certain && is_being_ended(row)) return;
         if (!row.is_ok && !is_rejected(row) && static_cast<int>(task.attempt) <= folder_.sweep().limits.retries) {
             ++progress_.retried;
             waiting_.push_back({task.index, task.attempt + 1});

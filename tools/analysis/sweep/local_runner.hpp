@@ -58,8 +58,9 @@ bool fits_in_memory(double available, double need, std::span<const double> busy,
 /// Runs all points of the share that have no successful row. Workers live for many points, so that what they loaded stays
 /// loaded; one that exceeds a limit, crashes or grows too large is replaced. A point that fails is tried again as often
 /// as the sweep states, unless a verb of Tactus rejected its input (exit code 2): that would fail again. Another worker
-/// is only started, and a point only handed out, while the memory that a point needed so far is available, less what the running points may still take. Ends early,
-/// without rows for the points that are running, when `stop` is set. Throws LogFailure.
+/// is only started, and a point only handed out, while the memory that a point needed so far is available, minus the
+/// memory that running points may still allocate. Ends early, without rows for the points that are running, when `stop`
+/// is set. Throws LogFailure.
 RunProgress run_locally(const SweepFolder& folder, const LocalRun& options);
 
 /// The share that the environment assigns: Open MPI, PMI (MPICH, Intel) or Slurm. Nothing: this process is alone.

@@ -107,7 +107,7 @@ std::string nearest(const Json& json, std::string pointer) {
             if (++count <= 8) there += (count > 1 ? ", " : "") + key;
         if (count > 8) there += fmt::format(" and {} more", count - 8);
     } else there = last.dump();
-    return fmt::format("{} has {}", pointer.empty() ? "its root" : pointer, there);
+    return fmt::format("{} has {}", pointer.empty() ? "the top level" : pointer, there);
 }
 
 void keep_value(Row& row, Hash& hash, const sweep::KeptValue& kept, const Json& json) {
@@ -152,9 +152,9 @@ public:
             for (std::size_t s = 0; s < sweep_.steps.size() && row_.reason.empty(); ++s) run_step(s);
             // Also when a step failed: perhaps for this reason.
             if (const fs::path changed = context_.folder->changed_file(point_); !changed.empty())
-                row_.reason =
-                    fmt::format("{} has changed since the sweep was prepared; 'tactus sweep run' again follows it",
-                                changed.string());
+                row_.reason = fmt::format(
+                    "{} has changed since the sweep was prepared; run 'tactus sweep run' again to use the new content",
+                    changed.string());
             if (row_.reason.empty()) publish_files();
             row_.is_ok = row_.reason.empty();
         } catch (const std::exception& error) {

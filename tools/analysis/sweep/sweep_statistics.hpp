@@ -36,9 +36,9 @@ struct FigureData {
 /// 95 % interval of the median of sorted values, of order statistics (binomial, free of a distribution); nothing below six.
 std::optional<std::pair<double, double>> median_interval(const std::vector<double>& sorted);
 
-/// Mean: t interval. Median: median_interval(). Fraction: Wilson interval. A difference of two columns is taken within
-/// each row, which pairs it by all that the two share; of two fractions: Newcombe's interval. Throws Error for a figure that the sweep cannot have
-/// (figure_problem), for an axis of a design, whose levels all differ, and for a value that is a text.
+/// Mean: t interval. Median: median_interval(). Fraction: Wilson interval. A difference of two columns is
+/// taken within each row, which pairs it by all that the two share; of two fractions: Newcombe's interval. Throws Error
+/// for a figure that does not fit the sweep (figure_problem), for an axis of a design, whose levels all differ, and for a value that is a text.
 FigureData figure_data(const Results& results, const sweep::FigureChoice& choice);
 
 }  // namespace tactus::analysis

@@ -117,6 +117,7 @@ int check(const CheckChoice& choice) {
         known.processes = std::move(found.processes);
         found = std::move(known);
     }
+    found.patch = choice.patch.patch;
     found.errors = problems.list;
     if (!result.json)
         for (const std::string& line : run::problem_lines(problems)) fmt::print(stderr, "{}\n", line);

@@ -44,7 +44,7 @@ struct Outcome {
 /// Frequency and density per channel.
 std::string analysis_csv(const analysis::AnalysedFile& file) {
     std::string text = "frequency_hz";
-    for (const analysis::AnalysedChannel& channel : file.channels) text += "," + channel.name;
+    for (const analysis::AnalysedChannel& channel : file.channels) text += "," + table::csv_field(channel.name);
     text += '\n';
     const std::size_t bins = file.channels.empty() ? 0 : file.channels.front().report.psd.power.size();
     for (std::size_t k = 0; k < bins; ++k) {

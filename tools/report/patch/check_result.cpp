@@ -135,7 +135,7 @@ std::string law_text(const NodeContactLaw& law) {
 std::string felt_text(const NodeContactLaw& law) {
     return !law.is_felt ? "nothing: no device gets its force"
            : law.felt   ? fmt::format("{:.4g} N/mm, its spring", *law.felt * 1e-3)
-                        : "all of it, unless a node after it takes less";
+                        : "all of it, unless a later node reduces it";
 }
 
 const Fields<NodeContactLaw>& contact_fields() {
@@ -237,7 +237,7 @@ std::vector<std::string> sound_lines(const std::optional<CheckedSound>& sound) {
     if (!sound) return all;
     if (sound->hears)
         all.push_back(
-            fmt::format("what a card hears waits {:.4g} ms (--audio-margin) and one callback, and as long as "
+            fmt::format("sound input is delayed by {:.4g} ms (--audio-margin) and one callback, and as long as "
                         "the card itself needs",
                         sound->buffer_ms));
     if (sound->plays)
@@ -316,7 +316,8 @@ std::vector<std::string> legend(const PatchCheck& c) {
         all.emplace_back(
             "walls: bound: (b - |B|) / (T / 2 + delay), Colgate and Schenkel; passive: the same by motion; friction: "
             "up "
-            "to which Coulomb friction takes what encoder steps give; simulated: the device begins to oscillate, at "
+            "to which Coulomb friction dissipates the energy of encoder quantisation; simulated: the device begins to "
+            "oscillate, at "
             "the "
             "worst press from 0.5 N to 0.8 of its force and approach up to 0.3 m/s. b includes a hand of 2 N s/m where "
             "the device states no damping");
@@ -330,10 +331,20 @@ std::string verdict_text(const PatchCheck& c) {
                           : "no errors";
 }
 
+std::vector<std::string> error_lines(const PatchCheck& c) {
+    std::vector<std::string> lines;
+    for (const Error& error : c.errors) lines.emplace_back(error.what());
+    return lines;
+}
+
 Fields<PatchCheck> plan_fields(const char* about) {
     using C = PatchCheck;
     return Fields<C>(about)
         .flag("ok", "", [](const C& c) { return c.errors.empty(); })
+        .page_titled([](const C& c) { return "Check of " + c.patch; })
+        .notes("", "errors", error_lines)
+        .judged([](const C&) { return Severity::fail; })
+        .on_pages()
         .rows("errors", "", error_fields(), &C::errors)
         .rows("groups", "groups", group_fields(), &C::groups)
         .rows("processes", "processes of devices", process_fields(), &C::processes);

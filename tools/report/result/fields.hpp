@@ -203,7 +203,7 @@ public:
             title_ = [read, inner = of_part.title_](const T& of) { return inner(std::invoke(read, of)); };
         return *this;
     }
-    /// What the last field means for the reader.
+    /// Severity of the last field.
     Fields& judged(std::function<Severity(const T&)> severity) {
         fields_.back().severity = std::move(severity);
         return *this;
@@ -228,10 +228,15 @@ public:
         title_ = std::move(title);
         return *this;
     }
+    /// The title of a page, where the terminal prints none.
+    Fields& page_titled(std::function<std::string(const T&)> title) {
+        page_title_ = std::move(title);
+        return *this;
+    }
     /// Views of the value live as long as it does.
     Result of(const T& value) const {
         if (other_ && is_other_(value)) return other_->of(value);
-        Result result{title_ ? title_(value) : std::string(), {}};
+        Result result{title_ ? title_(value) : std::string(), {}, page_title_ ? page_title_(value) : std::string()};
         for (const Field& field : fields_)
             result.entries.push_back({field.key, field.name, field.is_omitted,
                                       field.severity ? field.severity(value) : Severity::none, field.read(value),
@@ -286,7 +291,7 @@ private:
 
     std::string about_;
     std::vector<Field> fields_;
-    std::function<std::string(const T&)> title_{};
+    std::function<std::string(const T&)> title_{}, page_title_{};
     std::function<bool(const T&)> is_other_{};
     const Fields<T>* other_ = nullptr;
 };

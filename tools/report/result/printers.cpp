@@ -245,16 +245,9 @@ void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, 
     }
 }
 
-std::string csv_cell(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + "\"";
-}
-
 std::string scalar_csv(const Json& json) {
     return json.is_null()           ? std::string()
-           : json.is_string()       ? csv_cell(json.as_text())
+           : json.is_string()       ? table::csv_field(json.as_text())
            : json.is_number_float() ? fmt::format("{}", json.get<double>())
                                     : json.dump();
 }
@@ -272,12 +265,12 @@ void add_csv(std::string& out, const Result& result, const std::string& above) {
         else if (children && !children->results.empty()) add_csv(out, children->results.front(), path + ".");
         else {
             const Json value = value_json(entry);
-            const std::string unit = csv_cell(std::string(unit_of_value(entry)));
+            const std::string unit = table::csv_field(std::string(unit_of_value(entry)));
             if (value.is_array())
                 for (std::size_t n = 0; n < value.size(); ++n)
-                    out +=
-                        fmt::format("{},{},{}\n", csv_cell(fmt::format("{}.{}", path, n)), scalar_csv(value[n]), unit);
-            else out += fmt::format("{},{},{}\n", csv_cell(path), scalar_csv(value), unit);
+                    out += fmt::format("{},{},{}\n", table::csv_field(fmt::format("{}.{}", path, n)),
+                                       scalar_csv(value[n]), unit);
+            else out += fmt::format("{},{},{}\n", table::csv_field(path), scalar_csv(value), unit);
         }
     }
 }
@@ -310,10 +303,13 @@ std::vector<ReportBlock> blocks_of(const Result& result) {
 }
 
 std::string title_of(const Result& result) {
+    if (!result.page_title.empty()) return result.page_title;
     if (!result.title.empty()) return result.title;
     for (const ResultEntry& entry : result.entries)
-        if (const auto* children = as<ResultEntry::Children>(entry); children && !children->results.empty())
-            return title_of(children->results.front());
+        if (const auto* children = as<ResultEntry::Children>(entry); children && !children->results.empty()) {
+            const std::size_t count = children->results.size();
+            return count == 1 ? title_of(children->results.front()) : fmt::format("{} {}s", count, entry.name);
+        }
     return {};
 }
 

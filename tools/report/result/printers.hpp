@@ -23,7 +23,7 @@ file::Json json_of(const Result& result);
 /// The same as the output of a verb: with its version.
 file::Json output_json(const Result& result);
 
-/// The title, or that of the first section.
+/// The title of a page: its own, that of its only section, or the number of its sections.
 std::string title_of(const Result& result);
 
 /// Blocks of a page, for HTML and PDF.

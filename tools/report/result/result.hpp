@@ -121,6 +121,7 @@ struct ResultEntry {
 struct Result {
     std::string title;
     std::vector<ResultEntry> entries;
+    std::string page_title{};  ///< in place of `title` on pages
 
     const ResultEntry* find(std::string_view key) const;
 };

@@ -157,9 +157,10 @@ std::vector<std::string> warnings_of(const Attempt& a) {
     for (const SparedScore& one : score.spared)
         if (one.injured_mm3 > 0.0) all.push_back(fmt::format("injured: {}, {:.3g} mm³", one.name, one.injured_mm3));
     if (score.limited >= 0.005)
-        all.push_back(fmt::format(
-            "the force was limited {:.0f} % of the time in contact: the device gave less than the tool wanted",
-            100.0 * score.limited));
+        all.push_back(
+            fmt::format("the force was limited {:.0f} % of the time in contact: the device rendered less force than "
+                        "the tool requires",
+                        100.0 * score.limited));
     if (score.shown_share && *score.shown_share < analysis::complete_share)
         all.push_back("the blade was in the bone without force on the hand: do not compare this attempt with others");
     return all;
@@ -185,6 +186,7 @@ const Score& score_of(const Attempt& a) { return a.run->score; }
 const Fields<Attempt>& printed_fields() {
     static const Fields<Attempt> all = Fields<Attempt>("attempt")
                                            .titled(title_of)
+                                           .text("", "trainee", [](const Attempt& a) { return a.run->trainee; })
                                            .warnings("", warnings_of)
                                            .text("", "forces", scale_text)
                                            .rows("", "measures", measure_fields(), measures_of)
@@ -202,7 +204,7 @@ const Fields<Attempt>& row_fields() {
             .text("run", "", [](const Attempt& a) { return a.run->name; })
             .text("task", "", [](const Attempt& a) { return a.run->task.title; })
             .text(
-                "trainee", "trainee",
+                "trainee", "",
                 [](const Attempt& a) { return a.run->trainee.empty() ? std::nullopt : std::optional(a.run->trainee); })
             .omitted()
             .part(printed_fields(), attempt)
@@ -297,7 +299,7 @@ display::Figure draw_curves(const ScoredRuns& s) {
 /// The measures of all attempts side by side, with the reference group.
 ResultEntry::Rows side_by_side(const ScoredRuns& s) {
     ResultEntry::Rows table{{}, {{"", "measure"}}};
-    for (std::size_t n = 0; n < s.runs.size(); ++n) table.columns.emplace_back("", std::to_string(n + 1));
+    for (const ScoredRun& run : s.runs) table.columns.emplace_back("", run.name);
     if (!s.reference.empty()) {
         table.columns.emplace_back("", "percentile of the last");
         table.columns.emplace_back("", "reference, mean ± sd (n)");
@@ -310,7 +312,7 @@ ResultEntry::Rows side_by_side(const ScoredRuns& s) {
         Result row;
         row.entries.push_back({"", "measure", false, Severity::none, ResultEntry::Text{measure.label}});
         for (std::size_t n = 0; n < s.runs.size(); ++n)
-            row.entries.push_back(cell(std::to_string(n + 1), measure.of(s.runs[n].score)));
+            row.entries.push_back(cell(s.runs[n].name, measure.of(s.runs[n].score)));
         if (const ReferenceMeasure* group = find(s.reference, measure.name)) {
             row.entries.push_back(
                 cell("percentile of the last", analysis::percentile(measure, measure.of(s.runs.back().score), *group)));

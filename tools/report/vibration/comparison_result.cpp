@@ -187,7 +187,7 @@ std::string level_text(const Pair& p) {
         return fmt::format("{} lacks {:.1f} dB",
                            p.actuator_known ? "the actuator at its limit" : "the output as it was played",
                            p.level_gap_db);
-    return p.actuator_known ? "the actuator can reach it" : "the output lacks nothing";
+    return p.actuator_known ? "the actuator can reach it" : "no level is missing";
 }
 
 const Fields<Pair>& touch_fields() {

@@ -150,7 +150,7 @@ const Fields<Mode>& mode_fields() {
             .number("", "peak", fixed(2, "dB"), [](const Mode& m) { return 20.0 * std::log10(m.peak); })
             .flag("resolved", "damping within 5 %", &Mode::is_resolved)
             .number("needed_duration_s", "needs --duration", fixed(0, "s"),
-                    [](const Mode& m) { return m.needed_duration; });
+                    [](const Mode& m) { return std::ceil(m.needed_duration); });
     return all;
 }
 

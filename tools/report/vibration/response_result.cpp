@@ -61,7 +61,7 @@ const Fields<TwoChannels>& channels_fields() {
             .integer("segment", "", [](const T& t) { return t.welch.segment; })
             .integer("segments", "segments", [](const T& t) { return t.spectra.segments; })
             .number("effective_segments", "", significant(4), [](const T& t) { return t.spectra.effective_segments; })
-            .number("df_hz", "distance of the bins", significant(4, "Hz"), [](const T& t) { return t.spectra.df; })
+            .number("df_hz", "bin spacing", significant(4, "Hz"), [](const T& t) { return t.spectra.df; })
             .number("coherence_of_noise", "coherence of unrelated noise", fixed(3), &T::noise_coherence)
             .number("", "bins with a coherence of at least 0.9", fixed(0, "%", "1"), coherent_fraction)
             .number("delay_s", "", fixed(3, "ms", "s"), &T::delay)

@@ -561,7 +561,7 @@ const Fields<FileSpectrum>& file_fields() {
 
 std::vector<std::string> methods(const Spectra& s) {
     const SpectrumMethod& m = *s.method;
-    return {
+    std::vector<std::string> all{
         fmt::format("Curves: Welch, window {}, overlap {:g} %, detrend {}, average {}, scaling {}.", m.window,
                     100.0 * m.overlap, m.detrend, m.average, m.scaling),
         "Lines and bands: Welch, Hann, half overlapping, mean of each segment removed. Between bins by the ratio of "
@@ -571,6 +571,8 @@ std::vector<std::string> methods(const Spectra& s) {
                     "whole record; uncertain below a confidence of 0.25.",
                     m.fundamental),
         "Third octaves have centres 10^(n/10) Hz; ± is one standard deviation of noise in the band."};
+    if (!m.envelope.empty()) all.push_back(fmt::format("Envelope of the band {} Hz.", m.envelope));
+    return all;
 }
 
 }  // namespace
