@@ -342,11 +342,16 @@ Json schema_or_null(Json schema) {
 }
 
 Json schema_of_output(std::vector<Json> kinds) {
-    for (Json& kind : kinds) {
-        kind["properties"]["version"] = {{"const", result_version}};
-        kind["required"].push_back("version");
+    // A kind may itself be one of several.
+    std::vector<Json> objects;
+    for (const Json& kind : kinds)
+        if (const Json* several = kind.find("anyOf")) objects.insert(objects.end(), several->begin(), several->end());
+        else objects.push_back(kind);
+    for (Json& object : objects) {
+        object["properties"]["version"] = {{"const", result_version}};
+        object["required"].push_back("version");
     }
-    return kinds.size() == 1 ? kinds.front() : Json{{"anyOf", Json(kinds)}};
+    return objects.size() == 1 ? objects.front() : Json{{"anyOf", Json(objects)}};
 }
 
 }  // namespace tactus::report
