@@ -138,9 +138,10 @@ public:
     }
 
     void add(const Drawing& d) {
-        // Panels below each other get a page of their own.
+        // Panels below each other get the rest of the page, or a page of their own.
         const bool is_tall = d.figure.height() > 1.1 * d.figure.width();
-        const double high = is_tall ? bottom - top - 3.0 * line_of(caption_size) : max_drawing;
+        const double words = 3.0 * line_of(caption_size), left = bottom - y_ - words, page = bottom - top - words;
+        const double high = !is_tall ? max_drawing : left > 0.7 * page ? left : page;
         const double scale = std::min({points_per_pixel, inside / d.figure.width(), high / d.figure.height()});
         captioned(d.figure, scale, d.caption);
     }
