@@ -332,7 +332,7 @@ TEST_CASE("a row is read as it was written, and half a row is none") {
     failed.signal = 15;
     fs::create_directories(place.path / "log");
     // Pages that were never written: between two rows, and over the end of one and the begin of the next.
-    const std::string zeros(5000, '\0'), hole = line.substr(0, 60) + zeros + line.substr(80);
+    const std::string zeros(5000, '\0'), hole = line.substr(0, 64) + zeros + line.substr(80);
     place.write("log/a.jsonl", "{\"worker\":{\"machine\":\"here\"}}\n" + line + zeros + "\n" + hole + row_line(failed) +
                                    "no row\n" + line.substr(0, line.size() - 5));
     const auto files = log_files(place.path);
