@@ -10,7 +10,7 @@
 #include "tools/bench/bench.hpp"
 #include "tools/bench/contact_cases.hpp"
 #include "tools/bench/contact_peer.hpp"
-#include "tools/shell_word.hpp"
+#include "tools/run/shell_word.hpp"
 
 #include <fmt/format.h>
 
@@ -111,8 +111,8 @@ Json contact_libraries(const Case& c, int rounds) {
     const auto program = file::this_object().parent_path() / "bench_contact_libraries";
     if (!std::filesystem::exists(program, failure)) return found;
     const int frames = rounds * std::clamp(250'000 / c.points, 3, 50);
-    const std::string command =
-        fmt::format("{} {} {} {} {} {}", shell_word(program.string()), c.name, c.points, c.radius, c.distance, frames);
+    const std::string command = fmt::format("{} {} {} {} {} {}", run::shell_word(program.string()), c.name, c.points,
+                                            c.radius, c.distance, frames);
     std::FILE* rows = ::popen(command.c_str(), "r");
     if (!rows) return found;
     char line[512];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shell completion of verbs, options and option values; otherwise of files.
 #include "tools/command/manual.hpp"
-#include "tools/shell_word.hpp"
+#include "tools/run/shell_word.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -76,10 +76,10 @@ std::string groups_of(const VerbPage& page) {
 }
 
 void add_zsh(std::string& cases, const std::string& words, const VerbPage& page) {
-    cases += fmt::format("        {})\n            said=(", shell_word(words));
+    cases += fmt::format("        {})\n            said=(", run::shell_word(words));
     const auto add = [&](std::string name, const std::string& about) {
         for (std::size_t at = 0; (at = name.find(':', at)) != std::string::npos; at += 2) name.replace(at, 1, "\\:");
-        cases += "\n                " + shell_word(name + ":" + about);
+        cases += "\n                " + run::shell_word(name + ":" + about);
     };
     for (const VerbPage& verb : page.verbs) add(verb.name, verb.about);
     for (const OptionPage& option : page.options)

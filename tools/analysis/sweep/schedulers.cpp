@@ -4,7 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/analysis/sweep/results.hpp"
 #include "tools/run/child_process.hpp"
-#include "tools/shell_word.hpp"
+#include "tools/run/shell_word.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -91,7 +91,7 @@ SubmittedJob submit_to_slurm(const SweepFolder& folder, const SlurmJob& job) {
     write_renamed(script, fmt::format("#!/bin/sh\n"
                                       "# An element of the array: share I of N.\n"
                                       "exec {} sweep work {} --share $((SLURM_ARRAY_TASK_ID + 1))/{} --jobs {}\n",
-                                      shell_word(job.program.string()), shell_word(folder.path().string()),
+                                      run::shell_word(job.program.string()), run::shell_word(folder.path().string()),
                                       submitted.shares, job.jobs));
     std::vector<std::string> words{"sbatch",
                                    "--parsable",
@@ -139,8 +139,8 @@ std::size_t write_makefile(const SweepFolder& folder, std::size_t points_per_tar
                     "all:{}\n\n"
                     ".PHONY: all{}\n\n"
                     "{}:\n\t{} sweep work {} --share $(@:share-%=%)/{} --jobs {}\n",
-                    points, shares, all, all, all.substr(1), escaped(shell_word(program.string())),
-                    escaped(shell_word(folder.path().string())), shares, jobs));
+                    points, shares, all, all, all.substr(1), escaped(run::shell_word(program.string())),
+                    escaped(run::shell_word(folder.path().string())), shares, jobs));
     return shares;
 }
 

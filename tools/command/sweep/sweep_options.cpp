@@ -4,8 +4,8 @@
 #include "assets/file/part.hpp"
 #include "tools/command/catalogue.hpp"
 #include "tools/counted.hpp"
+#include "tools/run/shell_word.hpp"
 #include "tools/run/stop_signals.hpp"
-#include "tools/shell_word.hpp"
 
 #include <fmt/format.h>
 
@@ -77,7 +77,7 @@ std::string point_text(const analysis::SweepFolder& folder, std::size_t index, i
     std::string text = shown.is_own ? "tactus" : "";
     for (const std::string& word :
          sweep::words_of(sweep, shown, folder.tasks().point(index), folder.tasks().id(index), "OUT", "tactus"))
-        text += (text.empty() ? "" : " ") + short_shell_word(word);
+        text += (text.empty() ? "" : " ") + run::short_shell_word(word);
     return text;
 }
 

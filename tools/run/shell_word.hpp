@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::run {
 
 /// One word for a POSIX shell, quoted.
 inline std::string shell_word(const std::string& text) {
@@ -18,4 +18,4 @@ inline std::string short_shell_word(const std::string& text) {
     return !text.empty() && text.find_first_of(special) == std::string::npos ? text : shell_word(text);
 }
 
-}  // namespace tactus
+}  // namespace tactus::run
