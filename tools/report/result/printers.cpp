@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/result/printers.hpp"
 
+#include "assets/table/csv_field.hpp"
+#include "dsp/core/overload.hpp"
 #include "tools/report/figures/html_report.hpp"
 #include "tools/report/result/fields.hpp"
 
@@ -17,13 +19,6 @@ namespace tactus::report {
 namespace {
 
 using file::Json;
-
-template <class... Each>
-struct Overload : Each... {
-    using Each::operator()...;
-};
-template <class... Each>
-Overload(Each...) -> Overload<Each...>;
 
 /// Characters: bytes that begin one.
 std::size_t width_of(std::string_view text) {

@@ -2,6 +2,7 @@
 #include "tools/report/result/result.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/overload.hpp"
 #include "dsp/core/readable.hpp"
 #include "dsp/core/units.hpp"
 
@@ -16,13 +17,6 @@ namespace tactus::report {
 namespace {
 
 constexpr const char* dash = "–";
-
-template <class... Each>
-struct Overload : Each... {
-    using Each::operator()...;
-};
-template <class... Each>
-Overload(Each...) -> Overload<Each...>;
 
 /// Shown number per value.
 double scale_of(const std::string& unit, const std::string& of) {
