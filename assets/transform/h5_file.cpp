@@ -8,13 +8,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <sstream>
 
 namespace tactus::transform {
@@ -22,6 +28,8 @@ namespace tactus::transform {
 namespace {
 
 constexpr rlim_t max_seconds = 10;
+constexpr double max_memory =
+    1e9;  // bytes, beyond those of this process; parameters of displacement fields are not read
 constexpr char refusal_mark = '!';
 
 const H5Codec& codec() {
@@ -56,11 +64,23 @@ std::vector<ItkTransform> transforms_of(const std::string& message) {
     return transforms;
 }
 
+/// Bounds the memory of this process: the HDF5 library reserves what damaged sizes state.
+void limit_memory() {
+    rlimit memory{};
+    ::getrlimit(RLIMIT_AS, &memory);
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const double present = static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    memory.rlim_cur = static_cast<rlim_t>(std::min(static_cast<double>(memory.rlim_max), present + max_memory));
+    ::setrlimit(RLIMIT_AS, &memory);
+}
+
 /// Runs in the new process and ends it.
 [[noreturn]] void answer(const H5Codec& codec, const std::filesystem::path& path, int to) {
     const rlimit seconds{max_seconds, max_seconds}, no_core{0, 0};
     ::setrlimit(RLIMIT_CPU, &seconds);
     ::setrlimit(RLIMIT_CORE, &no_core);
+    limit_memory();
     std::string message;
     try {
         message = message_of(codec.read(path));
@@ -75,10 +95,19 @@ std::vector<ItkTransform> transforms_of(const std::string& message) {
     ::_exit(0);
 }
 
-std::string received(int from) {
+/// Returns what the process wrote until it ended; none if that takes longer than twice the processor time it may use,
+/// as with a network file system that does not answer.
+std::optional<std::string> received(int from) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::seconds(2 * max_seconds);
     std::string all;
     std::array<char, 4096> part;
     while (true) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+        pollfd waits{from, POLLIN, 0};
+        const int ready = left > 0 ? ::poll(&waits, 1, static_cast<int>(left)) : 0;
+        if (ready < 0 && errno == EINTR) continue;
+        if (ready <= 0) return std::nullopt;
         const ssize_t got = ::read(from, part.data(), part.size());
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) return all;
@@ -99,16 +128,18 @@ std::vector<ItkTransform> read_h5(const std::filesystem::path& path) {
         answer(loaded, path, ends[1]);
     }
     ::close(ends[1]);
-    const std::string message = child > 0 ? received(ends[0]) : std::string();
+    const std::optional<std::string> message = child > 0 ? received(ends[0]) : std::string();
+    if (!message) ::kill(child, SIGKILL);
     ::close(ends[0]);
     int status = 0;
     while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     if (child < 0) throw Error(fmt::format("{}: no process can be started to read it", path.string()));
+    if (!message) throw Error(fmt::format("{}: was not read within {} s", path.string(), 2 * max_seconds));
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         throw Error(fmt::format("{}: is damaged: the HDF5 library fails on it", path.string()));
-    if (message.starts_with(refusal_mark)) throw Error(fmt::format("{}: {}", path.string(), message.substr(1)));
-    std::vector<ItkTransform> transforms = transforms_of(message);
+    if (message->starts_with(refusal_mark)) throw Error(fmt::format("{}: {}", path.string(), message->substr(1)));
+    std::vector<ItkTransform> transforms = transforms_of(*message);
     // ITK stores a composite as an empty transform before its parts.
     if (transforms.size() == 2 && transforms.front().type.starts_with("CompositeTransform"))
         transforms.erase(transforms.begin());
