@@ -144,7 +144,7 @@ run_set() {
 test_all() {
     local set start result status=0 commit
     [ $# -gt 0 ] || set -- "${sets[@]}"
-    need always test cluster
+    need always test cluster readers
     [ -z "$(git status --porcelain --untracked-files=no)" ] || fail "commit first: the ledger names the commit that was tested"
     commit=$(git rev-parse --short=12 HEAD)
     for set in "$@"; do
