@@ -17,7 +17,7 @@ namespace tactus::reconstruction {
 
 namespace {
 
-constexpr double min_segment = 1.0 * mm, greatest_tilt = 75.0 * degree;
+constexpr double min_segment = 1.0 * mm;
 constexpr std::size_t max_planes = 6;
 
 std::string nth(std::size_t plane) { return fmt::format("plane {}", plane + 1); }
@@ -57,9 +57,9 @@ JawSide jaw_side(const FibulaInputs& inputs) {
         Vec3 normal = given.normal ? direction(*given.normal, nth(n) + ": the normal") : bisector;
         if (glm::dot(normal, bisector) < 0.0) normal = -normal;
         for (const Vec3& axis : {before, after})
-            if (angle_between(normal, axis) > greatest_tilt)
+            if (angle_between(normal, axis) > max_tilt)
                 throw Error(fmt::format("{}: it is tilted by {:.1f}° against a segment; at most {:.0f}°", nth(n),
-                                        angle_between(normal, axis) / degree, greatest_tilt / degree));
+                                        angle_between(normal, axis) / degree, max_tilt / degree));
         jaw.planes.push_back({given.origin, normal});
         if (n + 1 < count) jaw.y.push_back(y_of(given, normal, after, n));
         if (!is_end) jaw.off_bisector.push_back(angle_between(normal, bisector));

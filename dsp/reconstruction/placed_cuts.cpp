@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruction/placed_cuts.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/reconstruction/donor_bone.hpp"
+#include "dsp/reconstruction/plan_frame.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -11,11 +13,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tactus::reconstruction {
 
 namespace {
+
+/// rad: the axes of two segments that are closer to parallel determine their joint poorly.
+constexpr double min_joint_angle = 10.0 * degree;
+/// Of the rolls of the segments: the iteration converges within some rounds, to less than the smallest twist, rad.
+constexpr int max_roll_rounds = 30;
+constexpr double min_twist = 1e-12;
 
 /// The donor's line where a segment was placed, along the order of the jaw's planes.
 struct PlacedAxis {
@@ -25,20 +32,18 @@ struct PlacedAxis {
 };
 
 Vec3 on_plane(const PlacedAxis& axis, const JawPlane& plane, std::size_t segment) {
-    constexpr double min_cosine = 0.2588;  // tilt of at most 75°, as plan_fibula
     const Vec3 normal = glm::normalize(*plane.normal);
     const double along = glm::dot(normal, axis.direction);
-    if (!(std::abs(along) > min_cosine))
+    if (!(std::abs(along) > std::cos(max_tilt)))
         throw Error(fmt::format("segment {} lies nearly along the cut of the jaw that it should meet", segment + 1));
     return axis.point + glm::dot(plane.origin - axis.point, normal) / along * axis.direction;
 }
 
 /// `faces`: a point between the two faces of the joint.
 Vec3 joint_of(const PlacedAxis& a, const PlacedAxis& b, const Vec3& faces) {
-    constexpr double min_sine = 0.1736;  // 10°
     const Vec3 across = glm::cross(a.direction, b.direction);
     const double sine2 = glm::dot(across, across);
-    if (!(sine2 > min_sine * min_sine)) return 0.5 * (a.nearest_to(faces) + b.nearest_to(faces));
+    if (!(std::sqrt(sine2) > std::sin(min_joint_angle))) return 0.5 * (a.nearest_to(faces) + b.nearest_to(faces));
     const Vec3 between = b.point - a.point;
     const double s = glm::dot(glm::cross(between, b.direction), across) / sine2,
                  t = glm::dot(glm::cross(between, a.direction), across) / sine2;
@@ -48,13 +53,12 @@ Vec3 joint_of(const PlacedAxis& a, const PlacedAxis& b, const Vec3& faces) {
 /// Rotation about `axis` that is part of `turn`, rad.
 double twist_about(const Quat& turn, const Vec3& axis) {
     const double along = glm::dot(Vec3(turn.x, turn.y, turn.z), axis);
-    return std::remainder(2.0 * std::atan2(along, turn.w), 2.0 * std::numbers::pi);
+    return std::remainder(2.0 * std::atan2(along, turn.w), 2.0 * pi);
 }
 
 /// Sets `y` of each segment's first plane so that its roll is that of the placed piece. The projection of y into a tilted
-/// plane makes this an iteration, which converges within some rounds.
+/// plane makes this an iteration.
 void set_rolls(FibulaInputs& inputs, std::span<const Pose> placed, const std::vector<Vec3>& axes) {
-    constexpr int rounds = 30;
     FibulaInputs bare = inputs;
     bare.donor.reset();
     bare.along_line.clear();
@@ -64,7 +68,7 @@ void set_rolls(FibulaInputs& inputs, std::span<const Pose> placed, const std::ve
         const Vec3 up = std::abs(axes[n].z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, 1.0, 0.0);
         bare.planes[n].y = glm::normalize(up - glm::dot(up, axes[n]) * axes[n]);
     }
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < max_roll_rounds; ++round) {
         const FibulaPlan plan = plan_fibula(bare, donor);
         double most = 0.0;
         for (std::size_t n = 0; n < placed.size(); ++n) {
@@ -73,7 +77,7 @@ void set_rolls(FibulaInputs& inputs, std::span<const Pose> placed, const std::ve
             bare.planes[n].y = glm::angleAxis(twist, axes[n]) * *bare.planes[n].y;
             most = std::max(most, std::abs(twist));
         }
-        if (most < 1e-12) break;
+        if (most < min_twist) break;
     }
     for (std::size_t n = 0; n < placed.size(); ++n) inputs.planes[n].y = bare.planes[n].y;
 }

@@ -2,6 +2,7 @@
 // Directions and frames of a fibula plan.
 #pragma once
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/types.hpp"
 
@@ -15,6 +16,8 @@ namespace tactus::reconstruction {
 
 /// Sine of the angle below which a direction does not define a rotation about an axis.
 inline constexpr double min_y = 0.05;
+/// rad: largest angle between the normal of a cut and the axis of its segment.
+inline constexpr double max_tilt = 75.0 * degree;
 
 /// rad, 0 to pi.
 inline double angle_between(const Vec3& a, const Vec3& b) {

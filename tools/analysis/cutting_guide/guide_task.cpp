@@ -4,9 +4,11 @@
 #include "assets/bone/assumed_density.hpp"
 #include "assets/library/hand_script.hpp"
 #include "assets/mesh/repair.hpp"
+#include "dsp/carve/kerf_voxels.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/volume/surface_distance.hpp"
+#include "graph/edit/toml_spans.hpp"
 #include "tools/analysis/workers.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +25,6 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr double voxels_per_kerf = 3.2;
 constexpr double guide_voxel = 0.3 * mm;
 constexpr double around = 12.0 * mm;  // of bone beside the guide
 constexpr double lift = 20.0 * mm;    // the default of guide_seat
@@ -184,20 +185,11 @@ std::string listed(const Vec3& v, double unit, const char* name) {
 }
 std::string direction(const Vec3& v) { return fmt::format("[{:.12g}, {:.12g}, {:.12g}]", v.x, v.y, v.z); }
 
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        if (static_cast<unsigned char>(c) >= 0x20) out += c;
-    }
-    return out + "\"";
-}
-
 std::string text_of(const Cut& cut) {
     std::string text = fmt::format(
         "\n[[cut]]\nname   = {}\nkind   = \"plane\"\npoint  = {}\nnormal = {}\nfeed   = {}\ndepth  = \"{:.2f} mm\"\n"
         "depth_tolerance = \"2 mm\"\n",
-        quoted(cut.name), listed(cut.point, mm, "mm"), direction(cut.normal), direction(cut.feed),
+        edit::toml_quoted(cut.name), listed(cut.point, mm, "mm"), direction(cut.normal), direction(cut.feed),
         (cut.depth + 1.0 * mm) / mm);
     text += fmt::format("slot   = {{ wall = \"{:.6g} mm\", ", cut.wall / mm);
     if (!cut.is_ledge) text += fmt::format("width = \"{:.6g} mm\", ", cut.width / mm);
@@ -210,7 +202,7 @@ std::string text_of(const Cut& cut) {
 GuideTask guide_task(const PlannedGuide& guide, const std::string& title, const std::filesystem::path& bone_file,
                      const std::filesystem::path& guide_file, const TaskBlade& blade) {
     const cutting_guide::GuideSettings& set = guide.design.settings;
-    const double kerf = set.blade, voxel = kerf / voxels_per_kerf;
+    const double kerf = set.blade, voxel = kerf / carve::voxels_per_kerf;
     if (kerf < 0.3 * mm)
         throw Error(
             fmt::format("a blade of {:.2f} mm is too thin to be simulated: give --blade 0.3 or more", kerf / mm));
@@ -248,19 +240,20 @@ GuideTask guide_task(const PlannedGuide& guide, const std::string& title, const 
         "# A guide, its slots and its cuts, by 'tactus plan guide'. For research, not a medical device.\n"
         "format = 1\ntitle  = {}\nabout  = \"Put the guide on the bone, and saw in each of its slots.\"\n"
         "bone   = {}\npatch  = \"saw-guide\"\nlength = \"{:.0f} s\"\nsettings = [\n",
-        quoted(fmt::format("Guide of {}", title).substr(0, 60)), quoted(bone_file.string()),
+        edit::toml_quoted(fmt::format("Guide of {}", title).substr(0, 60)), edit::toml_quoted(bone_file.string()),
         std::ceil(hand.time() + 1.0));
     text += "    \"blade.sagittal=true\",\n";
     text += size("plan.clearance", clearance) + size("blade.length", blade.length) + size("blade.height", height) +
             size("blade.thickness", thickness) + size("blade.kerf", kerf) + size("carve.kerf", kerf) +
             size("heat.kerf", kerf) + size("seat.tolerance", set.offset + seat_slack);
     text += "    # A scripted hand shows it; with a device: --set hand.device=NAME\n    \"hand.device=scripted\",\n";
-    text += fmt::format("    {},\n]\n", quoted("scripted.targets=" + hand.targets()));
+    text += fmt::format("    {},\n]\n", edit::toml_quoted("scripted.targets=" + hand.targets()));
     text += fmt::format(
         "\n[blade]\nlength = \"{:.6g} mm\"\nheight = \"{:.6g} mm\"\nkerf   = \"{:.6g} mm\"\n"
         "stroke = \"{:.6g} mm\"\n",
         blade.length / mm, height / mm, kerf / mm, blade.stroke / mm);
-    text += fmt::format("\n[guide]\nbone    = {}\nremoval = {}\n", quoted(guide_file.string()), direction(removal));
+    text += fmt::format("\n[guide]\nbone    = {}\nremoval = {}\n", edit::toml_quoted(guide_file.string()),
+                        direction(removal));
     for (const Cut& cut : cuts) text += text_of(cut);
     return task;
 }
