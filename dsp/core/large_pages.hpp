@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -23,6 +24,16 @@ inline void prefer_large_pages([[maybe_unused]] void* data, [[maybe_unused]] std
     madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
     madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
 #endif
+}
+
+/// Returns `count` copies of a value in large pages.
+template <class T>
+std::vector<T> large_vector(std::size_t count, const T& value) {
+    std::vector<T> made;
+    made.reserve(count);
+    prefer_large_pages(made.data(), made.capacity() * sizeof(T));
+    made.assign(count, value);
+    return made;
 }
 
 }  // namespace tactus

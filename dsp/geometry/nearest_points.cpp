@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/geometry/nearest_points.hpp"
 
+#include "dsp/core/large_pages.hpp"
+
 #include <algorithm>
 #include <limits>
 
@@ -109,7 +111,7 @@ struct Pass {
 
 std::vector<std::int32_t> nearest_points(const volume::Grid& layout, std::span<const glm::vec3> points,
                                          const RunJobs& run, int first) {
-    std::vector<std::int32_t> nearest(layout.count(), -1);
+    std::vector<std::int32_t> nearest = large_vector(layout.count(), std::int32_t{-1});
     for (std::size_t n = 0; n < points.size(); ++n) {
         std::array<int, 3> cell{};
         for (int axis = 0; axis < 3; ++axis) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/surface_distance.hpp"
 
+#include "dsp/core/large_pages.hpp"
 #include "dsp/core/stop.hpp"
 #include "dsp/geometry/closest_point.hpp"
 #include "dsp/geometry/nearest_points.hpp"
@@ -18,21 +19,24 @@ constexpr int part_length = 16;  // samples of a row that are skipped together; 
 
 double widest_of(const Grid& layout) { return std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z}); }
 
-// Per sample: the nearest triangle so far and its closest point.
+// Per sample: the nearest triangle so far and its closest point. Together, because neighbours are asked for both.
+struct Foot {
+    std::int32_t triangle = -1;
+    glm::vec3 at{0.0f};  // m from the layout's origin
+};
+
 struct Feet {
     const Grid& layout;
     const geometry::TriangleSurface& surface;
-    std::vector<std::int32_t> triangle = std::vector<std::int32_t>(layout.count(), -1);
-    std::vector<glm::vec3> at = std::vector<glm::vec3>(layout.count());  // m from the layout's origin
-    std::vector<float> apart2 = std::vector<float>(layout.count(), std::numeric_limits<float>::infinity());  // m²
+    std::vector<Foot> foot = large_vector(layout.count(), Foot{});
+    std::vector<float> apart2 = large_vector(layout.count(), std::numeric_limits<float>::infinity());  // m²
 
     bool offer(std::size_t sample, const Vec3& p, std::int32_t candidate, const std::array<Vec3, 3>& corners) {
         const Vec3 closest = geometry::closest_on_triangle(p, corners[0], corners[1], corners[2]), d = closest - p;
         const auto far2 = static_cast<float>(glm::dot(d, d));
         if (!(far2 < apart2[sample])) return false;
         apart2[sample] = far2;
-        triangle[sample] = candidate;
-        at[sample] = glm::vec3(closest - layout.origin);
+        foot[sample] = {candidate, glm::vec3(closest - layout.origin)};
         return true;
     }
     bool offer(std::size_t sample, const Vec3& p, std::int32_t candidate) {
@@ -102,12 +106,13 @@ struct Far {
                 for (const int step : {-1, 1}) {
                     if (place[a] + step < 0 || place[a] + step >= size[a]) continue;
                     const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(sample) + step * stride[a]);
-                    if (feet.triangle[other] == feet.triangle[sample]) continue;
-                    const glm::vec3 d = feet.at[other] - here;
+                    const Foot& there = feet.foot[other];
+                    if (there.triangle == feet.foot[sample].triangle) continue;
+                    const glm::vec3 d = there.at - here;
                     // Close to the surface another triangle may be nearer, although its point for the neighbour is not.
                     const float wanted = closely && own < close2 ? own + cell2 : own * 0.9998f;
                     if (!(glm::dot(d, d) < wanted)) continue;
-                    changed |= feet.offer(sample, layout.position(i, j, k), feet.triangle[other]);
+                    changed |= feet.offer(sample, layout.position(i, j, k), there.triangle);
                     own = feet.apart2[sample];
                 }
         }
@@ -231,7 +236,7 @@ std::vector<float> surface_distance(const Grid& layout, const geometry::Triangle
 
 std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::TriangleSurface& surface,
                                           const RunJobs& run) {
-    std::vector<std::int16_t> crossings(layout.count(), 0);
+    std::vector<std::int16_t> crossings = large_vector(layout.count(), std::int16_t{0});
     const TriangleLayers near(layout, surface, 0.5 * widest_of(layout));
     run(layout.size[2], [&](int k) {
         for (const std::int32_t triangle : near[k]) {
@@ -257,7 +262,7 @@ Grid signed_distance(const Grid& layout, const geometry::TriangleSurface& surfac
 Grid signed_distance_near(const Grid& layout, const geometry::TriangleSurface& surface, double reach,
                           const RunJobs& run) {
     const auto most2 = static_cast<float>(reach * reach);
-    Grid grid{layout.size, layout.origin, layout.spacing, std::vector<float>(layout.count(), most2)};
+    Grid grid{layout.size, layout.origin, layout.spacing, large_vector(layout.count(), most2)};
     const TriangleLayers near(layout, surface, reach);
     run(layout.size[2], [&](int k) {
         offer_near(layout, surface, near, reach, k,
