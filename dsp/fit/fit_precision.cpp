@@ -26,6 +26,8 @@ constexpr std::size_t max_points = 500;  // of a face: the pairs are counted
 constexpr double intact_correlated = 2e-3;  // m
 constexpr double intact_deviations = 3.0;  // from the median distance: what is farther off is chipped
 constexpr std::size_t min_intact_points = 12;
+constexpr double widening = 1.1;
+constexpr double bias_in_voxels = 0.12;  // of smoothed surfaces
 
 using Slope = std::array<double, 6>;
 
@@ -114,11 +116,11 @@ void FitPrecisionSum::add(const FitSurface& moving, const FitSurface& fixed, con
 FitPrecision FitPrecisionSum::precision() const noexcept { return precision_of(information_); }
 
 FitPrecision FitPrecisionSum::calibrated() const noexcept {
-    FitPrecision found = precision_of(intact_information_);
-    const double bias = PoseBound::bias * voxel_;
-    found.turn *= PoseBound::widening;
-    for (double* length : {&found.face, &found.far}) *length = std::hypot(PoseBound::widening * *length, bias);
-    return found;
+    const FitPrecision all = precision(), intact = precision_of(intact_information_);
+    const auto between = [](double a, double b) { return widening * std::sqrt(std::max(a, b) * b); };
+    const double bias = bias_in_voxels * voxel_;
+    return {between(all.turn, intact.turn), std::hypot(between(all.far, intact.far), bias),
+            std::hypot(between(all.face, intact.face), bias)};
 }
 
 FitPrecision FitPrecisionSum::precision_of(std::span<const double, 36> matrix) const noexcept {

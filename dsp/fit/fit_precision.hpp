@@ -21,10 +21,6 @@ struct PoseBound {
     double turn = 0.0;  ///< rad
     double face = 0.0, far = 0.0;  ///< m, at the centroid of the face and at the farthest point
     bool has_rival = false;  ///< the second best pose is included
-
-    /// Calibration of the precision, by shafts of different shapes with known poses (`tactus bench shafts --shapes`): a
-    /// factor, and the bias of smoothed surfaces as a fraction of a voxel.
-    static constexpr double widening = 1.12, bias = 0.12;
 };
 
 /// `precision`: FitPrecisionSum::calibrated. `face`, `far`: these two points on the moving fragment, in its frame.
@@ -47,9 +43,10 @@ public:
     /// Returns the precision; infinite where the faces leave a motion free. It includes the scatter of chipped areas,
     /// although the last steps of a fit exclude them: verdicts are on the safe side.
     FitPrecision precision() const noexcept;
-    /// Returns the precision for a bound at 95 %: chipped areas are excluded (distances beyond three robust standard
-    /// deviations), and the result is calibrated. With chips, the precision above is 4 to 16 times the median error;
-    /// errors relative to this one do not depend on chips and voxels.
+    /// Returns the precision for a bound at 95 %: the geometric mean of the one above and of that without chipped areas
+    /// (distances beyond three robust standard deviations), calibrated by shafts of different shapes with known poses
+    /// (`tactus bench shafts --shapes`). With chips, the one above is 4 to 16 times the median error, and the other one is
+    /// too small for a tenth of the poses.
     FitPrecision calibrated() const noexcept;
 
     static constexpr double lever = 0.01;  ///< m, makes rotations comparable to translations
