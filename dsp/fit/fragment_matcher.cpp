@@ -200,16 +200,18 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
                glm::length(rotation_between(held.orientation, at.orientation)) > settings.max_turn;
     });
     std::ranges::sort(solved_, [&](const Solved& a, const Solved& b) { return worth(a) > worth(b); });
-    FragmentMatch first = match_;
+    FragmentMatch best = match_;
     for (std::size_t n = 0; n < std::min<std::size_t>(solved_.size(), 3); ++n) {
         match_ = {};
         match_.moving = moving;
         lead(solved_[n], poses, stands);
-        if (n == 0 && is_in_doubt()) confirm(solved_[n], poses, stands);
+        if (is_in_doubt()) confirm(solved_[n], poses, stands);
         if (match_.verdict == FitVerdict::fit) return match_;
-        if (n == 0) first = match_;
+        // A chance fit of large faces may come before the right one of small faces.
+        const bool is_better = match_.verdict == FitVerdict::uncertain && best.verdict != FitVerdict::uncertain;
+        if (n == 0 || is_better) best = match_;
     }
-    match_ = first;
+    match_ = best;
     return match_;
 }
 
