@@ -2,9 +2,11 @@
 // tactus plan cuts: the cuts of a reconstruction, as planned or as its pieces were placed.
 #include "tools/analysis/plan/plan_cuts.hpp"
 #include "assets/file/json.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "dsp/core/constants.hpp"
-#include "dsp/core/error.hpp"
+#include "tools/analysis/plan/flap_study.hpp"
 #include "tools/command/plan/plan_options.hpp"
+#include "tools/command/reconstruction/fibula_text.hpp"
 
 #include <fmt/format.h>
 
@@ -35,9 +37,16 @@ Json cuts_json(const analysis::CutsOfPieces& found, const std::string& alternati
             {"warnings", warnings}};
 }
 
+int list_cuts(const CutsChoice& choice) {
+    const plan::CasePlan plan = plan::load_case_plan(choice.plan);
+    const analysis::FlapStudy study(plan, plan::state_of(plan), choice.plan.parent_path());
+    if (choice.json) fmt::print("{}\n", fibula_json(study.inputs(), study.fibula()).dump(2));
+    else print_fibula(study.inputs(), study.fibula());
+    return done;
+}
+
 int derive_cuts(const CutsChoice& choice) {
-    if (!choice.from_pieces)
-        throw Error("--from-pieces is needed; 'tactus plan fibula' and 'tactus plan report' list the planned cuts");
+    if (!choice.from_pieces) return list_cuts(choice);
     const analysis::CutsOfPieces found = analysis::cut_as_placed(choice.plan, choice.alternative);
     if (choice.json) {
         fmt::print("{}\n", cuts_json(found, choice.alternative).dump(2));
@@ -62,14 +71,15 @@ Action declare_plan_cuts(VerbOptions& verb) {
     add_plan_options(verb, *choice);
     verb.flag("--from-pieces", choice->from_pieces,
               "derive the cuts from where the segments are placed, and cut new pieces there");
-    verb.add("--alternative", choice->alternative, "name of the alternative that the plan gets").shows_default();
+    verb.add("--alternative", choice->alternative, "with --from-pieces: name of the alternative that the plan gets")
+        .shows_default();
     return [choice] { return derive_cuts(*choice); };
 }
 
 }  // namespace
 
 Verb plan_cuts_verb() {
-    return {"cuts", "derive the cuts of a reconstruction from where its segments were placed by hand",
+    return {"cuts", "list the cuts of a reconstruction, or derive them from where its segments were placed by hand",
             declare_plan_cuts};
 }
 

@@ -61,10 +61,30 @@ TEST_CASE("cuts follow pieces that were placed by hand, as an alternative whose 
     CHECK_THAT(made.verb("cuts", "--from-pieces").err, ContainsSubstring("'from-pieces' exists already"));
 }
 
+TEST_CASE("the cuts of a plan are those of the inputs that it was made of", "[slow]") {
+    const PlacedCase made;
+    REQUIRE(made.run(made.inputs()).code == 0);
+    const std::string inputs = (made.folder.path / "inputs.json").string();
+    const test::Outcome listed = made.verb("cuts", "--json");
+    INFO(listed.err);
+    REQUIRE(listed.code == 0);
+    const json cuts = json::parse(listed.out);
+    CHECK(cuts == json::parse(made.folder.tactus("plan fibula " + inputs + " --json").out));
+    // The planes of the donor, placed, are those of the jaw.
+    const json &segment = cuts["segments"][0], &m = segment["donor_to_target"],
+               &p = segment["donor_planes"][0]["origin_mm"];
+    for (std::size_t row = 0; row < 3; ++row) {
+        double sum = m[row][3].get<double>();
+        for (std::size_t column = 0; column < 3; ++column)
+            sum += m[row][column].get<double>() * p[column].get<double>();
+        CHECK(sum == Approx(test::at(0.8)[row].get<double>()).margin(1e-6));
+    }
+    CHECK_THAT(made.verb("cuts").out, ContainsSubstring("segment 1: "));
+}
+
 TEST_CASE("cuts of pieces are refused with the next step where they are not defined", "[slow]") {
     const PlacedCase made;
     REQUIRE(made.run(made.inputs()).code == 0);
-    CHECK_THAT(made.verb("cuts").err, ContainsSubstring("--from-pieces is needed"));
     REQUIRE(made.verb("move", "jaw-1 --pose 1,0,0,1,0,0,0").code == 0);
     CHECK_THAT(made.verb("cuts", "--from-pieces").err, ContainsSubstring("'jaw-1' was moved"));
     REQUIRE(made.verb("undo", "--steps 2").code == 0);
