@@ -31,6 +31,8 @@ using file::Json;
 // To be raised with every change of code that changes measured warnings: reach, clearances, overlaps, their words.
 constexpr int warnings_algorithm = 1;
 
+constexpr double max_accepted_gap = 3.0 * mm;  // farther apart, no surfaces face each other (plan_gaps)
+
 double angle_between(const Pose& a, const Pose& b) {
     return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a.orientation, b.orientation))));
 }
@@ -69,6 +71,14 @@ private:
             if (state_.fits[static_cast<std::size_t>(n)] && !state_.holds(n) && !state_.arrangement.is_hidden(n))
                 add("void-fit", fmt::format("{}: {}", name(n), fit_words(state_, n)), name(n),
                     state_.fits[static_cast<std::size_t>(n)]->partner, true);
+        for (int n = 0; n < static_cast<int>(plan_.fragments.size()); ++n)
+            if (!state_.arrangement.is_hidden(n) && is_accepted(n) &&
+                state_.fits[static_cast<std::size_t>(n)]->rms > max_accepted_gap)
+                add("accepted-apart",
+                    fmt::format("{} is accepted {:.1f} mm from {}: they are not in contact", name(n),
+                                state_.fits[static_cast<std::size_t>(n)]->rms / mm,
+                                state_.fits[static_cast<std::size_t>(n)]->partner),
+                    name(n), state_.fits[static_cast<std::size_t>(n)]->partner, false);
         // The pieces of a reconstruction lie where its planes say, not where surfaces fit.
         if (parts.size() > 1 && !state_.reconstruction)
             add("not-connected",

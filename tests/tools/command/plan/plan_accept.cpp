@@ -46,6 +46,7 @@ TEST_CASE("a place that a surgeon accepts completes a plan, and is void when a p
     const Outcome complete = bar.run("check");
     INFO(complete.out);
     CHECK(complete.code == 0);
+    CHECK_THAT(complete.out, !ContainsSubstring("not in contact"));
     const json fit = json::parse(bar.run("show", "--json").out)["fragments"][1]["fit"];
     CHECK(fit["verdict"] == "accepted by hand");
     CHECK(fit["partner"] == "one");
@@ -57,6 +58,10 @@ TEST_CASE("a place that a surgeon accepts completes a plan, and is void when a p
     CHECK(moved.code == 1);
     CHECK_THAT(moved.out, ContainsSubstring("is void: moved 1.00 mm"));
     CHECK_THAT(bar.run("accept", "two --by hand --beside two").err, ContainsSubstring("cannot be its own partner"));
+    REQUIRE(bar.run("move", "two --pose 90,0,0,1,0,0,0").code == 0);
+    REQUIRE(bar.run("accept", "two --by hand").code == 0);
+    CHECK_THAT(bar.run("check").out, ContainsSubstring("warning: two is accepted ") &&
+                                         ContainsSubstring(" mm from one: they are not in contact"));
     REQUIRE(bar.run("hide", "one").code == 0);
     CHECK_THAT(bar.run("accept", "two --by hand").err, ContainsSubstring("the only fragment that is shown"));
 }
