@@ -30,13 +30,15 @@ struct PlanFragment {
     Vec3 colour{0.90, 0.86, 0.76};
 };
 
-/// The healthy side, mirrored and registered to the case: the target for its fragments, assuming a symmetric body.
+/// The target for the fragments of a case: the healthy side, mirrored and registered, assuming a symmetric body; or a bone
+/// of the same side, such as that of another person, registered without a mirror.
 struct MirrorTarget {
     std::string file;
     std::uint64_t hash = 0;
+    bool is_mirrored = true;
     Vec3 plane_normal{1.0, 0.0, 0.0};  ///< unit normal of the mirror plane in the file's frame
     double plane_offset = 0.0;  ///< m: the plane is n·x = offset
-    Pose pose;  ///< pose of the mirrored side in the frame of the case
+    Pose pose;  ///< pose of the target in the frame of the case
     double residual = 0.0;  ///< m, median distance after registration
 };
 

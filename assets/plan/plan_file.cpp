@@ -49,6 +49,7 @@ Json json_of(const PlanFit& fit) {
 Json json_of(const MirrorTarget& mirror) {
     return {{"file", mirror.file},
             {"hash", hex(mirror.hash)},
+            {"mirrored", mirror.is_mirrored},
             {"plane_normal", json_of(mirror.plane_normal)},
             {"plane_offset_m", mirror.plane_offset},
             {"pose", json_of(mirror.pose)},
@@ -112,6 +113,11 @@ public:
         if (!std::isfinite(number)) fail(fmt::format("has a '{}' that is not finite", key));
         return number;
     }
+    bool truth(const char* key) const {
+        const Json& value = at(key);
+        if (!value.is_boolean()) fail(fmt::format("has a '{}' that is neither true nor false", key));
+        return value.get<bool>();
+    }
     int index(const char* key, std::size_t count) const {
         const Json& value = at(key);
         if (!value.is_number_integer() || value.get<std::int64_t>() < -1 ||
@@ -167,8 +173,13 @@ PlanFit read_fit(const Item& item) {
 MirrorTarget read_mirror(const Item& item) {
     const Vec3 normal = item.vector("plane_normal");
     if (!(std::abs(glm::length(normal) - 1.0) < 1e-6)) item.fail("has a 'plane_normal' that does not have unit length");
-    return {item.text("file"),        item.hash("hash"),        normal, item.number("plane_offset_m"),
-            item.item("pose").pose(), item.number("residual_m")};
+    return {item.text("file"),
+            item.hash("hash"),
+            !item.has("mirrored") || item.truth("mirrored"),
+            normal,
+            item.number("plane_offset_m"),
+            item.item("pose").pose(),
+            item.number("residual_m")};
 }
 
 StepKind read_kind(const Item& item) {

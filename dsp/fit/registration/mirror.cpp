@@ -39,6 +39,22 @@ std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoin
     return out;
 }
 
+std::vector<contact::SurfacePoint> moved(std::vector<contact::SurfacePoint> points, const Pose& pose) {
+    for (contact::SurfacePoint& p : points) {
+        p.position = pose.apply(p.position);
+        p.normal = pose.rotate(p.normal);
+    }
+    return points;
+}
+
+MirrorFit fit_same_side(std::span<const contact::SurfacePoint> whole, std::span<const contact::SurfacePoint> broken,
+                        const RegistrationSettings& settings) {
+    MirrorFit fit;
+    fit.registration = register_from_anywhere(broken, whole, RegistrationTarget(whole), settings);
+    fit.pose = fit.registration.pose.inverse();
+    return fit;
+}
+
 MirrorFit fit_mirror(std::span<const contact::SurfacePoint> healthy, std::span<const contact::SurfacePoint> broken,
                      const RegistrationSettings& settings) {
     // Any initial mirror will do; the registration finds the rest.

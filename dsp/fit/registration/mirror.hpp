@@ -22,6 +22,9 @@ struct MirrorPlane {
 std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoint> points, const MirrorPlane& plane,
                                             const Pose& pose = {});
 
+/// Returns points moved by `pose`.
+std::vector<contact::SurfacePoint> moved(std::vector<contact::SurfacePoint> points, const Pose& pose);
+
 struct MirrorFit {
     MirrorPlane plane;  ///< symmetry plane of the body, in the frame of both
     Pose pose;  ///< residual motion after the reflection: asymmetry of the body and its pose in the scanner
@@ -33,5 +36,10 @@ struct MirrorFit {
 /// one that minimises the residual motion. Throws Error without points.
 MirrorFit fit_mirror(std::span<const contact::SurfacePoint> healthy, std::span<const contact::SurfacePoint> broken,
                      const RegistrationSettings& settings = {});
+
+/// The same without a mirror, for a bone of the same side, as of another person: p ↦ pose(p). The plane has no meaning,
+/// and `rotation` and `glide` are 0.
+MirrorFit fit_same_side(std::span<const contact::SurfacePoint> whole, std::span<const contact::SurfacePoint> broken,
+                        const RegistrationSettings& settings = {});
 
 }  // namespace tactus::fit

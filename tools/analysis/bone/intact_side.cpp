@@ -19,8 +19,18 @@ constexpr int sampling = 1;
 }  // namespace
 
 std::vector<contact::SurfacePoint> laid_target(const plan::MirrorTarget& target, const std::filesystem::path& folder) {
-    return fit::mirrored(points_of_file(plan::file_of(target.file, folder)), {target.plane_normal, target.plane_offset},
-                         target.pose);
+    std::vector<contact::SurfacePoint> points = points_of_file(plan::file_of(target.file, folder));
+    if (target.is_mirrored) return fit::mirrored(points, {target.plane_normal, target.plane_offset}, target.pose);
+    return fit::moved(std::move(points), target.pose);
+}
+
+geometry::TriangleSurface laid_surface(const plan::MirrorTarget& target, geometry::TriangleSurface surface) {
+    const fit::MirrorPlane plane{target.plane_normal, target.plane_offset};
+    for (Vec3& v : surface.vertices) v = target.pose.apply(target.is_mirrored ? plane.reflect(v) : v);
+    // A mirror turns triangles inside out.
+    if (target.is_mirrored)
+        for (auto& t : surface.triangles) std::swap(t[1], t[2]);
+    return surface;
 }
 
 std::optional<fit::RegistrationTarget> healthy_side(const plan::PlanState& state, const std::filesystem::path& folder) {
@@ -42,12 +52,7 @@ const std::vector<contact::SurfacePoint>& IntactBone::points() {
 }
 
 std::vector<double> IntactBone::numbers_on(std::span<const contact::SurfacePoint> main) {
-    fit::MirrorFit laid;
-    if (mirror_) laid = fit::fit_mirror(points(), main);
-    else {
-        laid.registration = fit::register_from_anywhere(main, points(), fit::RegistrationTarget(points()));
-        laid.pose = laid.registration.pose.inverse();
-    }
+    const fit::MirrorFit laid = mirror_ ? fit::fit_mirror(points(), main) : fit::fit_same_side(points(), main);
     std::vector<double> numbers;
     add_registration(numbers, laid.registration);
     const Vec3 &n = laid.plane.normal, &p = laid.pose.position;
@@ -61,9 +66,7 @@ std::vector<contact::SurfacePoint> IntactBone::laid(NumberReader& numbers) {
     for (double* number : {&plane.normal.x, &plane.normal.y, &plane.normal.z, &plane.offset}) *number = numbers.next();
     const Pose onto = numbers.pose();
     if (mirror_) return fit::mirrored(points(), plane, onto);
-    std::vector<contact::SurfacePoint> moved = points();
-    for (contact::SurfacePoint& p : moved) p = {onto.apply(p.position), onto.rotate(p.normal), p.area, p.label};
-    return moved;
+    return fit::moved(points(), onto);
 }
 
 }  // namespace tactus::analysis

@@ -4,6 +4,7 @@
 
 #include "assets/plan/case_plan.hpp"
 #include "dsp/fit/registration/registration.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 #include "tools/analysis/bone/kept_numbers.hpp"
 
 #include <cstddef>
@@ -16,9 +17,11 @@
 
 namespace tactus::analysis {
 
-/// The healthy side of a plan in the frame of the case; `folder` is the plan's folder. Throws Error. Does not check
+/// The target of a plan in the frame of the case; `folder` is the plan's folder. Throws Error. Does not check
 /// whether the file has changed; see check_files.
 std::vector<contact::SurfacePoint> laid_target(const plan::MirrorTarget& target, const std::filesystem::path& folder);
+/// The same for a surface in the frame of the target's file.
+geometry::TriangleSurface laid_surface(const plan::MirrorTarget& target, geometry::TriangleSurface surface);
 
 /// The same as a registration target, for the plan's state; empty if it has no healthy side.
 std::optional<fit::RegistrationTarget> healthy_side(const plan::PlanState& state, const std::filesystem::path& folder);

@@ -30,7 +30,7 @@ constexpr double beside = 8e-3;  // m around a fragment: more than the distance 
 }  // namespace
 
 MirrorStudy::MirrorStudy(const plan::CasePlan& plan, const std::filesystem::path& folder, int main,
-                         const std::filesystem::path& healthy)
+                         const std::filesystem::path& healthy, bool is_mirrored)
     : fragments_(plan::fragments_of(plan)),
       folder_(folder),
       healthy_(healthy),
@@ -39,11 +39,14 @@ MirrorStudy::MirrorStudy(const plan::CasePlan& plan, const std::filesystem::path
     plan::check_files(plan, folder);
     plan::CasePlan named;
     plan::add_fragment(named, "healthy", healthy, folder, Vec3(0.0));
-    plan::ResultKey key("mirrored side on a fragment", mirror_algorithm);
+    plan::ResultKey key(is_mirrored ? "mirrored side on a fragment" : "same side on a fragment", mirror_algorithm);
     key.add_file(healthy).add_file(file_of_fragment(main));
-    NumberReader read(known(key, mirror_fit_numbers,
-                            [&] { return numbers_of_mirror_fit(fit::fit_mirror(healthy_points(), main_points())); }));
+    NumberReader read(known(key, mirror_fit_numbers, [&] {
+        return numbers_of_mirror_fit(is_mirrored ? fit::fit_mirror(healthy_points(), main_points())
+                                                 : fit::fit_same_side(healthy_points(), main_points()));
+    }));
     fit_ = read.mirror_fit();
+    target_.is_mirrored = is_mirrored;
     target_.file = named.fragments[0].file;
     target_.hash = named.fragments[0].hash;
     target_.plane_normal = fit_.plane.normal;
@@ -109,7 +112,9 @@ MirrorStudy::MainPart MirrorStudy::main_part(int other, std::span<const Pose> po
 }
 
 const fit::RegistrationTarget& MirrorStudy::surface() {
-    if (!surface_) surface_.emplace(fit::mirrored(healthy_points(), fit_.plane, target_.pose));
+    if (!surface_)
+        surface_.emplace(target_.is_mirrored ? fit::mirrored(healthy_points(), fit_.plane, target_.pose)
+                                             : fit::moved(healthy_points(), target_.pose));
     return *surface_;
 }
 
@@ -148,7 +153,7 @@ MirrorComparison MirrorStudy::compare(int other, const Pose& from) {
     const auto key_at = [&](const Pose& pose) {
         plan::ResultKey key("fragment on the mirrored side", mirror_algorithm);
         for (const int n : {main_, other}) key.add_file(file_of_fragment(n));
-        key.add_file(healthy_);
+        key.add_file(healthy_).add("mirrored", target_.is_mirrored);
         for (const Pose& p : {target_.pose, stands_, pose}) add_pose(key, p);
         return key;
     };

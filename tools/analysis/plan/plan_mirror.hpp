@@ -35,9 +35,10 @@ struct MirrorComparison {
 /// loaded only if a result with it is not cached.
 class MirrorStudy {
 public:
-    /// `healthy`: a bone file, a CT or a mesh. Throws Error, also for a file of the plan that has changed.
+    /// `healthy`: a bone file, a CT or a mesh; `is_mirrored` false: of the same side as the case, and not mirrored. Throws
+    /// Error, also for a file of the plan that has changed.
     MirrorStudy(const plan::CasePlan& plan, const std::filesystem::path& folder, int main,
-                const std::filesystem::path& healthy);
+                const std::filesystem::path& healthy, bool is_mirrored = true);
 
     const fit::MirrorFit& fit() const { return fit_; }
     const plan::MirrorTarget& target() const { return target_; }  ///< as stored in the plan

@@ -4,6 +4,7 @@
 #include "assets/plan/plan_file.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/analysis/plan/target_deviation.hpp"
 #include "tools/command/plan/plan_options.hpp"
 
 #include <fmt/format.h>
@@ -18,18 +19,21 @@ int check(const PlanChoice& choice) {
     const plan::PlanState state = plan::state_of(plan);
     const analysis::CaseWarnings found = analysis::case_warnings(plan, choice.plan.parent_path());
     for (const std::string& note : found.notes) fmt::print(stderr, "note: {}\n", note);
+    const auto deviation = analysis::deviation_from_target(plan, choice.plan.parent_path());
     if (choice.json) {
         Json problems = Json::array();
         for (const analysis::CaseWarning& warning : found.all)
             if (warning.is_fault) problems.push_back(warning.text);
-        fmt::print("{}\n", Json{{"ok", !found.has_fault()},
-                                {"assemblies", analysis::assembly_names(plan, state)},
-                                {"problems", problems},
-                                {"warnings", analysis::json_of(found.all)}}
-                               .dump(2));
+        Json checked{{"ok", !found.has_fault()},
+                     {"assemblies", analysis::assembly_names(plan, state)},
+                     {"problems", problems},
+                     {"warnings", analysis::json_of(found.all)}};
+        if (!deviation.empty()) checked["deviation"] = analysis::deviation_json(deviation);
+        fmt::print("{}\n", checked.dump(2));
     } else {
         if (!state.reconstruction)
             for (const std::string& line : analysis::connection_words(plan, state)) fmt::print("{}\n", line);
+        for (const analysis::NamedDeviation& one : deviation) fmt::print("{}\n", analysis::deviation_words(one));
         print_warnings(found);
         if (!found.has_fault())
             fmt::print("{}\n", state.reconstruction

@@ -2,6 +2,7 @@
 // tactus plan mirror: registers the mirrored healthy side as a target.
 #include "tools/analysis/plan/plan_mirror.hpp"
 #include "assets/file/json.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/command/plan/plan_options.hpp"
@@ -20,7 +21,8 @@ using file::Json;
 
 struct MirrorChoice : PlanChoice {
     std::filesystem::path healthy;
-    bool settle = false;
+    bool settle = false, same_side = false;
+    double max_residual = analysis::max_intact_median / mm;
 };
 
 Json faces_json(const analysis::FacesThere& faces) {
@@ -54,19 +56,26 @@ void print_comparison(const std::string& fragment, const std::string& main, cons
     print_faces(fragment, "there", main, c.after);
 }
 
-/// A mirrored side that lies wrongly is no target: the plan does not take it, and nothing is compared with it.
-bool is_doubtful(const fit::MirrorFit& fit) { return fit.registration.median > analysis::max_intact_median; }
+/// A side that lies wrongly is no target: the plan does not use it, and nothing is compared with it.
+bool is_doubtful(const MirrorChoice& choice, const fit::MirrorFit& fit) {
+    return fit.registration.median > choice.max_residual * mm;
+}
+
+const char* target_words(const MirrorChoice& choice) { return choice.same_side ? "same side" : "mirrored side"; }
 
 std::string doubt_words(const MirrorChoice& choice) {
     return fmt::format(
-        "the mirrored side lies more than {:.0f} mm away from half of '{}', so that it is no target: name the "
-        "largest fragment first, and check that {} is the same bone of the other side; the plan is unchanged",
-        analysis::max_intact_median * 1e3, choice.names[0], choice.healthy.string());
+        "the {} lies more than {:.3g} mm away from half of '{}', so that it is no target: name the largest fragment "
+        "first, and check that {} is the same bone of {} side, or accept more with --max-residual; the plan is "
+        "unchanged",
+        target_words(choice), choice.max_residual, choice.names[0], choice.healthy.string(),
+        choice.same_side ? "the same" : "the other");
 }
 
 Json json_of(const MirrorChoice& choice, const fit::MirrorFit& fit, const Json& others) {
     return {{"on", choice.names[0]},
-            {"doubt", is_doubtful(fit) ? Json(doubt_words(choice)) : Json(nullptr)},
+            {"mirrored", !choice.same_side},
+            {"doubt", is_doubtful(choice, fit) ? Json(doubt_words(choice)) : Json(nullptr)},
             {"residual_mm", fit.registration.median * 1e3},
             {"residual_p90_mm", fit.registration.p90 * 1e3},
             {"plane_normal", {fit.plane.normal.x, fit.plane.normal.y, fit.plane.normal.z}},
@@ -109,9 +118,10 @@ int mirror(const MirrorChoice& choice) {
             throw Error(
                 fmt::format("'{}' is named twice; the first is the main fragment, the others are brought to it", name));
     }
-    analysis::MirrorStudy laid(plan, folder, numbers[0], choice.healthy);
+    analysis::MirrorStudy laid(plan, folder, numbers[0], choice.healthy, !choice.same_side);
+    const bool is_refused = is_doubtful(choice, laid.fit());
     Json others = Json::array();
-    if (!is_doubtful(laid.fit())) {
+    if (!is_refused) {
         add_target(plan, laid, choice);
         numbers.erase(numbers.begin());
         others = compare_others(plan, laid, numbers, choice);
@@ -119,18 +129,23 @@ int mirror(const MirrorChoice& choice) {
     for (const std::string& note : laid.notes()) fmt::print(stderr, "note: {}\n", note);
     if (choice.json) fmt::print("{}\n", json_of(choice, laid.fit(), others).dump(2));
     else {
-        fmt::print("mirrored side on {}: median {:.2f} mm, 90 % within {:.2f} mm\n", choice.names[0],
+        fmt::print("{} on {}: median {:.2f} mm, 90 % within {:.2f} mm\n", target_words(choice), choice.names[0],
                    laid.fit().registration.median * 1e3, laid.fit().registration.p90 * 1e3);
-        if (is_doubtful(laid.fit())) fmt::print("! {}\n", doubt_words(choice));
+        if (is_refused) fmt::print("! {}\n", doubt_words(choice));
     }
-    return is_doubtful(laid.fit()) ? answer_is_no : done;
+    return is_refused ? answer_is_no : done;
 }
 
 Action declare_plan_mirror(VerbOptions& verb) {
     const auto choice = std::make_shared<MirrorChoice>();
     add_plan_options(verb, *choice);
-    verb.add("healthy", choice->healthy, "bone file or mesh of the other side").required();
+    verb.add("healthy", choice->healthy, "bone file or mesh of the other side, or of the same side").required();
     add_fragments(verb, *choice, "the fixed fragment; further fragments are compared, or moved with --settle");
+    verb.flag("--same-side", choice->same_side,
+              "do not mirror: the bone is of the same side, as that of another person or of an earlier scan");
+    verb.add("--max-residual", choice->max_residual, "mm, largest median distance from the fixed fragment")
+        .range(0.1, 20.0)
+        .shows_default();
     verb.flag("--settle", choice->settle, "move the other fragments to their best pose on the target");
     return [choice] { return mirror(*choice); };
 }
@@ -138,7 +153,8 @@ Action declare_plan_mirror(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_mirror_verb() {
-    return {"mirror", "mirror the healthy side and register it to a fragment, as a target; 1: it does not lie on it",
+    return {"mirror",
+            "register the mirrored healthy side, or another bone, to a fragment, as a target; 1: it does not lie on it",
             declare_plan_mirror};
 }
 

@@ -6,6 +6,7 @@
 #include "tools/analysis/plan/plan_case.hpp"
 #include "tools/analysis/plan/plan_vessels.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
+#include "tools/analysis/plan/target_deviation.hpp"
 #include "tools/command/plan/flap_text.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
@@ -46,7 +47,8 @@ Json fit_json(const plan::PlanState& state, int fragment) {
         {"overlap_mm2", fit.overlap * 1e6}};
 }
 
-Json json_of(const plan::CasePlan& plan, const analysis::CaseWarnings& warnings) {
+Json json_of(const plan::CasePlan& plan, const analysis::CaseWarnings& warnings,
+             const std::vector<analysis::NamedDeviation>& deviation) {
     Json problems = Json::array();
     for (const analysis::CaseWarning& warning : warnings.all)
         if (warning.code == "changed-file") problems.push_back(warning.text);
@@ -89,6 +91,7 @@ Json json_of(const plan::CasePlan& plan, const analysis::CaseWarnings& warnings)
     for (const plan::PlanAlternative& a : plan.alternatives)
         json["alternatives"].push_back({{"name", a.name}, {"steps", fit::steps_to(before, a.place.head).size()}});
     if (state.reconstruction) json["reconstruction"] = reconstruction_json(*state.reconstruction);
+    if (!deviation.empty()) json["deviation"] = analysis::deviation_json(deviation);
     json["vessels"] = Json::array();
     if (state.vessels)
         for (const reconstruction::FlapVessel& v : *state.vessels)
@@ -98,6 +101,7 @@ Json json_of(const plan::CasePlan& plan, const analysis::CaseWarnings& warnings)
                                        {"radius_mm", v.radius * 1e3}});
     if (state.mirror)
         json["mirror"] = {{"file", state.mirror->file},
+                          {"mirrored", state.mirror->is_mirrored},
                           {"plane_normal",
                            {state.mirror->plane_normal.x, state.mirror->plane_normal.y, state.mirror->plane_normal.z}},
                           {"plane_offset_mm", state.mirror->plane_offset * 1e3},
@@ -110,8 +114,9 @@ Json json_of(const plan::CasePlan& plan, const analysis::CaseWarnings& warnings)
 int show_plan(const PlanChoice& choice) {
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     const analysis::CaseWarnings warnings = analysis::known_warnings(plan, choice.plan.parent_path());
+    const auto deviation = analysis::deviation_from_target(plan, choice.plan.parent_path());
     if (choice.json) {
-        fmt::print("{}\n", json_of(plan, warnings).dump(2));
+        fmt::print("{}\n", json_of(plan, warnings, deviation).dump(2));
         return done;
     }
     const plan::PlanState state = plan::state_of(plan);
@@ -135,6 +140,7 @@ int show_plan(const PlanChoice& choice) {
             fmt::print("  {}: {}, {:.1f} mm long, radius {:.2f} mm\n", v.name, reconstruction::name_of(v.kind),
                        analysis::length_of(v) * 1e3, v.radius * 1e3);
     if (state.reconstruction) print_reconstruction(*state.reconstruction);
+    for (const analysis::NamedDeviation& one : deviation) fmt::print("  {}\n", analysis::deviation_words(one));
     if (!state.reconstruction)
         for (const std::string& line : analysis::connection_words(plan, state)) fmt::print("  {}\n", line);
     print_warnings(warnings);

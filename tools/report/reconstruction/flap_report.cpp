@@ -7,6 +7,7 @@
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 #include "tools/analysis/plan/flap_words.hpp"
+#include "tools/analysis/plan/target_deviation.hpp"
 #include "tools/render/flap_scene.hpp"
 #include "tools/report/reconstruction/flap_drawing.hpp"
 
@@ -112,6 +113,22 @@ ReportTable segments(const Measured& m) {
             row.push_back(mm2(plan.contact[n]));
         }
         row.resize(8);
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+ReportTable deviations(const std::vector<analysis::NamedDeviation>& all) {
+    ReportTable table{{"segment", "curve, rms, mm", "curve, greatest, mm", "contour, rms, mm", "contour, lowest, mm",
+                       "contour, highest, mm", "facing the target, %"},
+                      {}};
+    for (const auto& [segment, deviation] : all) {
+        std::vector<std::string> row{segment, "–", "–", "–", "–", "–", "–"};
+        if (const auto& curve = deviation.curve) row[1] = in_mm(curve->rms), row[2] = in_mm(curve->greatest);
+        if (const auto& contour = deviation.contour) {
+            row[3] = in_mm(contour->rms), row[4] = in_mm(contour->lowest), row[5] = in_mm(contour->highest);
+            row[6] = fmt::format("{:.0f}", 100.0 * contour->share);
+        }
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -322,6 +339,16 @@ std::vector<ReportBlock> flap_blocks(const plan::CasePlan& plan, const fs::path&
         for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
             out.emplace_back(Drawing{osteotomy_drawing(in, m.study->fibula(), n, end),
                                      fmt::format("Segment {}, cut at plane {} of the jaw", n + 1, n + end + 1)});
+    if (const auto all_deviations = analysis::deviation_from_target(plan, folder); !all_deviations.empty()) {
+        out.emplace_back(Heading{"Deviation from the target"});
+        out.emplace_back(Paragraph{fmt::format(
+            "The target is {}{}. Curve: from the segment's axis to the middle of the target within 15 mm, in sections "
+            "across the "
+            "axis. Contour: from the target's surface to the segment's, where both face the same way; positive beyond "
+            "the target, 2.5 and 97.5 % of the area.",
+            fs::path(m.state.mirror->file).filename().string(), m.state.mirror->is_mirrored ? ", mirrored" : "")});
+        out.emplace_back(deviations(all_deviations));
+    }
     out.emplace_back(Heading{"Order of the operation, as planned"});
     out.emplace_back(operation(m));
     if (!m.measures.reaches.empty()) {

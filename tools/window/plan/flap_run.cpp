@@ -8,6 +8,7 @@
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 #include "tools/analysis/plan/flap_words.hpp"
+#include "tools/analysis/plan/target_deviation.hpp"
 
 #include <fmt/format.h>
 
@@ -40,6 +41,8 @@ FlapRun::Verdicts verdicts_of(const plan::CasePlan& plan, const fs::path& folder
         verdicts.lines.push_back(fmt::format("{} to {}: {:.2f} mm", c.object, c.other, c.distance * 1e3));
     if (measures.tumour_margin)
         verdicts.lines.push_back(fmt::format("tumour to the nearest cut: {:.1f} mm", *measures.tumour_margin * 1e3));
+    for (const analysis::NamedDeviation& one : analysis::deviation_from_target(plan, folder))
+        verdicts.lines.push_back(analysis::deviation_words(one));
     for (const analysis::CaseWarning& warning : analysis::case_warnings(plan, folder).all)
         verdicts.warnings.push_back(warning.text);
     return verdicts;
