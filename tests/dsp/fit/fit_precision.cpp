@@ -154,6 +154,24 @@ TEST_CASE("dsp: what is right and not held is uncertain, and what does not belon
         CHECK(fit::answer_of(of) == answer);
 }
 
+TEST_CASE("dsp: faces must be more alike to fit in voxels of 1 mm than in fine ones") {
+    const auto verdict_at = [](double voxel, double score) {
+        fit::FitSettings settings;
+        fit::widen_for(settings, Vec3(voxel));
+        fit::FitQuality quality;
+        quality.score = score;
+        quality.share = 0.6;
+        quality.overlap = 100e-6;
+        quality.rms = 0.3 * settings.sigma;
+        return fit::judge(quality, false, 0.5, settings);
+    };
+    for (const double voxel : {0.35 * mm, 0.5 * mm}) CHECK(verdict_at(voxel, 0.4) == fit::FitVerdict::fit);
+    // Strangers reach 0.5 there.
+    CHECK(verdict_at(1.0 * mm, 0.4) == fit::FitVerdict::no_match);
+    CHECK(verdict_at(1.0 * mm, 0.55) == fit::FitVerdict::uncertain);
+    CHECK(verdict_at(1.0 * mm, 0.65) == fit::FitVerdict::fit);
+}
+
 TEST_CASE(
     "dsp: the bound of a fit contains a rival that is nearly as good, and two sides of a body never agree better") {
     const fit::FitPrecision precision{0.002, 0.4 * mm, 0.1 * mm};
