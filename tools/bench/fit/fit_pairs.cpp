@@ -126,8 +126,10 @@ public:
                 if (piece(j).bone == 2) add(i, j, "foreign", alike(i, j, false));
                 if (piece(j).bone == 0) {
                     const double common = common_area(piece(i), piece(j), maps_[static_cast<std::size_t>(j)]);
-                    if (common > 30e-6) add(i, j, "true", placed(i, j));
-                    else if (common < 2e-6) add(i, j, "neighbour", alike(i, j, true));
+                    if (common > 30e-6) {
+                        add(i, j, "true", placed(i, j));
+                        add(i, j, "slipped", slipped(i, j));
+                    } else if (common < 2e-6) add(i, j, "neighbour", alike(i, j, true));
                 }
                 if (piece(j).bone == 1) {
                     const int of = piece(j).mirror_of;
@@ -170,6 +172,17 @@ private:
 
     Pose placed(int i, int j) const { return piece(j).place.inverse() * piece(i).place; }
 
+    /// One relief period along the face from the true place.
+    Pose slipped(int i, int j) const {
+        Pose pose = placed(i, j);
+        const auto [m, f] = similar(i, j);
+        if (m < 0) return pose;
+        const Vec3 n = fit::direction_of(matcher_->face(static_cast<std::size_t>(f)).mean_normal);
+        const Vec3 t = glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0)));
+        pose.position += relief_period * t;
+        return pose;
+    }
+
     /// Where the true place would be if the mirror image of the partner were turned over the plane through its face.
     Pose reflected(int i, int j) const {
         const int of = piece(j).mirror_of;
@@ -189,16 +202,20 @@ private:
 
     void add(int i, int j, const char* kind, const Pose& place) {
         if (matcher_->faces_of(i) == 0 || matcher_->faces_of(j) == 0) return;
-        const bool is_true = std::string_view(kind) == "true";
+        const bool is_slipped = std::string_view(kind) == "slipped",
+                   is_true = is_slipped || std::string_view(kind) == "true";
         std::vector<Pose> poses(pieces_.size());
         std::ranges::fill(stands_, 0);
         stands_[static_cast<std::size_t>(j)] = 1;
         const auto [m, f] = similar(i, j);
         const Vec3 middle = is_true ? touching(i, j) : matcher_->face(static_cast<std::size_t>(m)).centre;
         const Random random{group_.seed * 97 + static_cast<std::uint64_t>(i * 64 + j)};
-        poses[static_cast<std::size_t>(i)] = is_true ? shaken(place, middle, 4e-3, 10.0 * degree, random)
-                                                     : shaken(place, middle, 2e-3, 5.0 * degree, random);
+        poses[static_cast<std::size_t>(i)] = is_true && !is_slipped ? shaken(place, middle, 4e-3, 10.0 * degree, random)
+                                                                    : shaken(place, middle, 2e-3, 5.0 * degree, random);
+        // A global search does not depend on the start.
+        const Pose truth = is_slipped ? placed(i, j) : place;
         for (const bool is_global : {false, true}) {
+            if (is_slipped && is_global) continue;
             PairTrial trial;
             trial.kind = kind;
             trial.is_global = is_global;
@@ -221,16 +238,17 @@ private:
             trial.held = unheld.precision.far;
             trial.loose = loose.verdict;
             trial.verdict = strict.verdict;
+            trial.has_rival = strict.bound.has_rival;
             trial.score = loose.quality.score;
             trial.margin = loose.margin;
             trial.share = loose.quality.share;
             trial.overlap = loose.quality.overlap;
             trial.rms = loose.quality.rms;
             if (is_true) {
-                trial.error = face_error(piece(i), loose.pose, place, middle);
-                trial.verdict_error = face_error(piece(i), strict.pose, place, middle);
+                trial.error = face_error(piece(i), loose.pose, truth, middle);
+                trial.verdict_error = face_error(piece(i), strict.pose, truth, middle);
                 const Vec3 end = farthest_from(piece(i), middle);
-                trial.far_error = glm::length(unheld.pose.apply(end) - place.apply(end));
+                trial.far_error = glm::length(unheld.pose.apply(end) - truth.apply(end));
             }
             trials_.push_back(trial);
         }

@@ -23,8 +23,13 @@ struct PairGroup {
 /// Group `number`: both bones, chips of 0, 10 and 20 %, two voxel sizes and both kinds of paint take turns.
 PairGroup pair_group(int number);
 
+/// m along the face: the longest wave of a simulated fracture (assets/plan/rough_surface.hpp), after which its relief looks
+/// like itself.
+inline constexpr double relief_period = 9e-3;
+
 struct PairTrial {
-    std::string kind;  ///< true, neighbour (a fracture of the same bone), mirrored, foreign
+    std::string
+        kind;  ///< true, neighbour (a fracture of the same bone), mirrored, foreign, slipped (true, see relief_period)
     bool is_global = false;  ///< else from a start near the place, or near where it would look alike
     int moving = 0, partner = 0;
     fit::FitVerdict loose = fit::FitVerdict::no_match;  ///< without thresholds
@@ -32,6 +37,7 @@ struct PairTrial {
     double score = 0.0, margin = 0.0, share = 0.0, overlap = 0.0, rms = 0.0;  ///< of the loose one; m², m
     double error = -1.0;  ///< m, rms at the painted face, of the loose one; negative: the pair belongs nowhere
     double verdict_error = -1.0;  ///< the same of the other
+    bool has_rival = false;  ///< the bound of the other contains another place
     /// With the thresholds of the program but for Acceptance::max_far.
     fit::FitVerdict unheld = fit::FitVerdict::no_match;
     double held = 0.0;  ///< m, FitPrecision::far of that fit

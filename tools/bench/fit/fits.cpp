@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace tactus::bench {
@@ -22,6 +23,7 @@ using file::Json;
 struct FitsChoice {
     int first = 0, groups = 60;
     std::string half = "both";
+    std::optional<double> voxel;  // mm
     std::filesystem::path out;
     bool json = false;
 };
@@ -37,6 +39,8 @@ bool is_chosen(const FitsChoice& choice, int group) {
 struct FitsTally {
     int groups = 0, mismatches = 0, near_misses = 0, false_fits = 0, false_uncertain = 0, trials = 0, found = 0,
         kept = 0;
+    int slipped = 0;  ///< starts a relief period away that do not lead to the right place
+    int right = 0, right_fit = 0, right_uncertain = 0;  ///< neighbours whose best place is right
     double weakest_score = 1.0, weakest_share = 1.0, weakest_margin = 1.0, strongest_score = 0.0;
 };
 
@@ -48,6 +52,7 @@ Json row_of(int group, const PairTrial& t) {
             {"partner", t.partner},
             {"loose", fit::name_of(t.loose)},
             {"verdict", fit::name_of(t.verdict)},
+            {"rival", t.has_rival},
             {"score", t.score},
             {"margin", t.margin},
             {"share", t.share},
@@ -85,7 +90,7 @@ std::vector<HeldTally> held_of(const std::vector<Json>& rows, bool to_set) {
 }
 
 FitsTally tally_of(const std::vector<Json>& rows, bool to_set) {
-    constexpr double found_mm = 0.5, false_mm = 1.0;
+    constexpr double found_mm = 0.5, false_mm = 1.0, right_mm = 3.0;
     FitsTally tally;
     int last = -1;
     for (const Json& row : rows) {
@@ -95,15 +100,21 @@ FitsTally tally_of(const std::vector<Json>& rows, bool to_set) {
         last = group;
         const bool is_true = row["kind"] == "true", fits = row["verdict"] == "fit";
         const double score = row["score"].get<double>();
+        const bool is_right = is_true && row["verdict_error_mm"].get<double>() <= right_mm;
+        if (row["kind"] == "slipped" && row["verdict_error_mm"].get<double>() <= right_mm) continue;
         if (!is_true) {
             ++tally.mismatches;
+            tally.slipped += row["kind"] == "slipped";
             tally.near_misses += row["kind"] != "foreign";
             tally.false_fits += fits;
-            tally.false_uncertain += row["verdict"] == "uncertain";
+            tally.false_uncertain += row["verdict"] == "uncertain" && !row["rival"].get<bool>();
             if (row["loose"] == "fit") tally.strongest_score = std::max(tally.strongest_score, score);
             continue;
         }
         ++tally.trials;
+        tally.right += is_right;
+        tally.right_fit += is_right && fits;
+        tally.right_uncertain += is_right && row["verdict"] == "uncertain";
         tally.false_fits += fits && row["verdict_error_mm"].get<double>() > false_mm;
         if (row["loose"] != "fit" || !(row["error_mm"].get<double>() < found_mm)) continue;
         ++tally.found;
@@ -127,6 +138,10 @@ Json json_of(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set
             {"bones", t.groups},
             {"mismatches", t.mismatches},
             {"near_misses", t.near_misses},
+            {"slipped", t.slipped},
+            {"right", t.right},
+            {"right_fit", t.right_fit},
+            {"right_uncertain", t.right_uncertain},
             {"false_fits", t.false_fits},
             {"false_uncertain", t.false_uncertain},
             {"true_pairs", t.trials},
@@ -141,12 +156,13 @@ Json json_of(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set
 
 void print(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set) {
     fmt::print(
-        "{}: {} broken bones; {} mismatches, {} of them near misses: {} false fits, {} uncertain; {} neighbours, {} "
+        "{}: {} broken bones; {} mismatches, {} of them near misses, {} slipped by a relief period: {} false fits, {} "
+        "uncertain without a rival; of {} right places {} fit and {} are uncertain; {} neighbours, {} "
         "found without "
         "thresholds, {} kept ({:.1f} %); weakest true fit: score {:.2f}, share {:.2f}, margin {:.2f}\n",
-        to_set ? "to set" : "to judge", t.groups, t.mismatches, t.near_misses, t.false_fits, t.false_uncertain,
-        t.trials, t.found, t.kept, t.found > 0 ? 100.0 * t.kept / t.found : 0.0, t.weakest_score, t.weakest_share,
-        t.weakest_margin);
+        to_set ? "to set" : "to judge", t.groups, t.mismatches, t.near_misses, t.slipped, t.false_fits,
+        t.false_uncertain, t.right, t.right_fit, t.right_uncertain, t.trials, t.found, t.kept,
+        t.found > 0 ? 100.0 * t.kept / t.found : 0.0, t.weakest_score, t.weakest_share, t.weakest_margin);
     for (const HeldTally& h : held)
         fmt::print(
             "    far end held within {:.2f} mm: {} right fits kept, {} lost; {} wrong ones (0.5 mm off) kept, {} "
@@ -161,7 +177,9 @@ int bench_fits(const FitsChoice& choice) {
     for (int n = choice.first; n < choice.first + choice.groups; ++n) {
         if (lines.has(n) || !is_chosen(choice, n)) continue;
         std::vector<Json> rows;
-        for (const PairTrial& trial : try_pairs(pair_group(n))) rows.push_back(row_of(n, trial));
+        PairGroup group = pair_group(n);
+        if (choice.voxel) group.voxel = *choice.voxel * 1e-3;
+        for (const PairTrial& trial : try_pairs(group)) rows.push_back(row_of(n, trial));
         lines.add(n, rows);
     }
     Json halves = Json::array();
@@ -186,6 +204,7 @@ Verb fits_verb() {
             verb.add("--half", choice->half, "of the broken bones: set (thresholds), judge, or both")
                 .one_of({"set", "judge", "both"})
                 .shows_default();
+            verb.add("--voxel", choice->voxel, "mm, of the scans (default: 0.35 and 0.5 in turn)").range(0.1, 2.0);
             verb.add("--out", choice->out, "file of results, JSON lines; what it holds is not done again");
             verb.flag("--json", choice->json, "as JSON");
             return [choice] { return bench_fits(*choice); };
