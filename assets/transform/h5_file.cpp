@@ -3,6 +3,7 @@
 
 #include "assets/file/module.hpp"
 #include "assets/file/whole_file.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -16,8 +17,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -98,14 +99,12 @@ void limit_memory() {
 /// Returns what the process wrote until it ended; none if that takes longer than twice the processor time it may use,
 /// as with a network file system that does not answer.
 std::optional<std::string> received(int from) {
-    using Clock = std::chrono::steady_clock;
-    const auto end = Clock::now() + std::chrono::seconds(2 * max_seconds);
+    const std::int64_t end = steady_ns() + 2 * static_cast<std::int64_t>(max_seconds) * 1'000'000'000;
     std::string all;
     std::array<char, 4096> part;
     while (true) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
         pollfd waits{from, POLLIN, 0};
-        const int ready = left > 0 ? ::poll(&waits, 1, static_cast<int>(left)) : 0;
+        const int ready = ::poll(&waits, 1, ms_until(end));
         if (ready < 0 && errno == EINTR) continue;
         if (ready <= 0) return std::nullopt;
         const ssize_t got = ::read(from, part.data(), part.size());
