@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A plan file holds a tree that only grows, so two versions are combined as the union of their trees. A textual merge
-// could produce a plan that nobody made.
+// could produce a plan that nobody made. An alternative that only one side has moved is moved on, as a fast-forward of git.
 #include "assets/plan/plan_merge.hpp"
 
 #include "assets/plan/plan_files.hpp"
+#include "assets/plan/plan_history.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -78,43 +79,68 @@ private:
 
 bool is_same(fit::HistoryPlace a, fit::HistoryPlace b) { return a.head == b.head && a.tip == b.tip; }
 
+/// Whether `later` goes on from the last step of `earlier`, which has nothing to redo: moving on loses nothing.
+bool goes_on(const CasePlan& plan, fit::HistoryPlace earlier, fit::HistoryPlace later) {
+    return earlier.head == earlier.tip && fit::is_on_way(plan.before(), earlier.head, later.head);
+}
+
+PlanAlternative* find_alternative(CasePlan& plan, const std::string& name) {
+    const auto found = std::ranges::find(plan.alternatives, name, &PlanAlternative::name);
+    return found == plan.alternatives.end() ? nullptr : &*found;
+}
+
 std::optional<fit::HistoryPlace> place_named(const CasePlan& plan, const std::string& name) {
     const auto found = std::ranges::find(plan.alternatives, name, &PlanAlternative::name);
     return found == plan.alternatives.end() ? std::nullopt : std::optional(found->place);
 }
 
+/// Moves an alternative of that name, or of an earlier merge ("main (2)"), on to `place`, or adds one.
+void add_alternative(CasePlan& merged, const std::string& theirs, fit::HistoryPlace place, bool is_only_theirs,
+                     MergedAlternatives& changed) {
+    std::string name = theirs;
+    for (int n = 2; PlanAlternative* known = find_alternative(merged, name); ++n) {
+        if (is_same(known->place, place)) return;
+        if ((n == 2 && is_only_theirs) || goes_on(merged, known->place, place)) {
+            known->place = place;
+            changed.forwarded.push_back(name);
+            return;
+        }
+        name = fmt::format("{} ({})", theirs, n);
+    }
+    merged.alternatives.push_back({name, place});
+    changed.added.push_back(std::move(name));
+}
+
 }  // namespace
 
-std::vector<std::string> merge(CasePlan& plan, const CasePlan& other, const CasePlan* base) {
+MergedAlternatives merge(CasePlan& plan, const CasePlan& other, const CasePlan* base) {
     CasePlan merged = plan;
     const Merge into(merged, other);
     std::optional<Merge> from_base;
     if (base) from_base.emplace(merged, *base);
-    std::vector<std::string> added;
+    MergedAlternatives changed;
     for (const PlanAlternative& theirs : other.alternatives) {
         const fit::HistoryPlace place = into.place(theirs.place);
         const auto mine = place_named(merged, theirs.name);
-        if (mine && is_same(*mine, place)) continue;
+        bool is_only_theirs = false;
         if (base) {
+            const auto named = place_named(*base, theirs.name);
+            const auto before = named ? std::optional(from_base->place(*named)) : std::nullopt;
             // Unchanged there; here it was moved or dropped.
-            const auto before = place_named(*base, theirs.name);
-            if (before && is_same(from_base->place(*before), place)) continue;
+            if (before && is_same(*before, place)) continue;
+            is_only_theirs = before && mine && is_same(*before, *mine);
         } else if (mine && !into.is_new(place)) continue;
-        std::string name = theirs.name;
-        bool is_known = false;
-        for (int n = 2; const auto known = place_named(merged, name); ++n) {
-            is_known = is_known || is_same(*known, place);
-            name = fmt::format("{} ({})", theirs.name, n);
-        }
-        // Of an earlier merge.
-        if (is_known) continue;
-        merged.alternatives.push_back({name, place});
-        added.push_back(std::move(name));
+        add_alternative(merged, theirs.name, place, is_only_theirs, changed);
     }
+    if (!changed.added.empty() && merged.alternatives.size() > PlanHistory::max_alternatives)
+        throw Error(
+            fmt::format("the two plans have {} alternatives together, and a plan has at most {}: remove some "
+                        "of either first ('tactus plan alternative')",
+                        merged.alternatives.size(), PlanHistory::max_alternatives));
     // The combined tree must be as valid as its parts: a reconstruction hides the pieces of all others.
     visit_steps(merged, [](int, const PlanState&, const PlanState&) {});
     plan = std::move(merged);
-    return added;
+    return changed;
 }
 
 }  // namespace tactus::plan

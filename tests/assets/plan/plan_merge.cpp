@@ -31,6 +31,8 @@ bool is_locked(const plan::CasePlan& plan, int alternative, int fragment) {
     return plan::state_of(plan, head).arrangement.is_locked(fragment);
 }
 
+bool is_nothing(const plan::MergedAlternatives& changed) { return changed.added.empty() && changed.forwarded.empty(); }
+
 }  // namespace
 
 TEST_CASE("two versions of a plan combine to all steps of both and the other way is an alternative") {
@@ -39,7 +41,7 @@ TEST_CASE("two versions of a plan combine to all steps of both and the other way
     plan::CasePlan mine = base, theirs = base;
     lock(mine, 1);
     lock(theirs, 2);
-    CHECK(plan::merge(mine, theirs, &base) == std::vector<std::string>{"main (2)"});
+    CHECK(plan::merge(mine, theirs, &base).added == std::vector<std::string>{"main (2)"});
     REQUIRE(mine.steps.size() == 3);
     REQUIRE(mine.alternatives.size() == 2);
     CHECK(mine.current == 0);
@@ -47,10 +49,10 @@ TEST_CASE("two versions of a plan combine to all steps of both and the other way
     CHECK((is_locked(mine, 1, 2) && !is_locked(mine, 1, 1)));
     CHECK((is_locked(mine, 0, 0) && is_locked(mine, 1, 0)));
     // Again: nothing is new, also where the other version does not know of the merge.
-    CHECK(plan::merge(mine, theirs, &base).empty());
+    CHECK(is_nothing(plan::merge(mine, theirs, &base)));
     const std::string content = plan::content_of(mine);
     plan::CasePlan again = mine;
-    CHECK(plan::merge(again, mine, &base).empty());
+    CHECK(is_nothing(plan::merge(again, mine, &base)));
     CHECK(plan::content_of(again) == content);
 }
 
@@ -58,7 +60,7 @@ TEST_CASE("the same step on both sides is one step") {
     plan::CasePlan base = three(), mine = base, theirs = base;
     lock(mine, 1);
     lock(theirs, 1);
-    CHECK(plan::merge(mine, theirs, &base).empty());
+    CHECK(is_nothing(plan::merge(mine, theirs, &base)));
     CHECK(mine.steps.size() == 1);
 }
 
@@ -67,17 +69,71 @@ TEST_CASE("an undo on the other side is an alternative and one that only this si
     lock(base, 0);
     plan::CasePlan mine = base, theirs = base;
     lock(mine, 1);
-    CHECK(plan::merge(mine, theirs, &base).empty());
+    CHECK(is_nothing(plan::merge(mine, theirs, &base)));
     theirs.place() = {-1, 0};
-    CHECK(plan::merge(mine, theirs, &base) == std::vector<std::string>{"main (2)"});
+    CHECK(plan::merge(mine, theirs, &base).added == std::vector<std::string>{"main (2)"});
     CHECK_FALSE(is_locked(mine, 1, 0));
     // Without the ancestor an earlier position is not told from a later one that goes on from it.
     plan::CasePlan restored = base;
     lock(restored, 2);
-    CHECK(plan::merge(restored, base, nullptr).empty());
+    CHECK(is_nothing(plan::merge(restored, base, nullptr)));
     plan::CasePlan further = base;
     lock(further, 1);
-    CHECK(plan::merge(restored, further, nullptr) == std::vector<std::string>{"main (2)"});
+    CHECK(plan::merge(restored, further, nullptr).added == std::vector<std::string>{"main (2)"});
+}
+
+TEST_CASE("an alternative that only the other side has changed moves on and is no alternative of its own") {
+    plan::CasePlan base = three();
+    lock(base, 0);
+    plan::CasePlan mine = base, theirs = base;
+    lock(theirs, 1);
+    lock(theirs, 2);
+    CHECK(plan::merge(mine, theirs, &base).forwarded == std::vector<std::string>{"main"});
+    CHECK(mine.alternatives.size() == 1);
+    CHECK((is_locked(mine, 0, 1) && is_locked(mine, 0, 2)));
+    CHECK(is_nothing(plan::merge(mine, theirs, &base)));
+    // Also an undo, which has no step of its own.
+    mine = base;
+    theirs = base;
+    theirs.place() = {-1, 0};
+    CHECK(plan::merge(mine, theirs, &base).forwarded == std::vector<std::string>{"main"});
+    CHECK_FALSE(is_locked(mine, 0, 0));
+    // Without an ancestor, if it goes on from the last step here; an undo here is kept.
+    mine = base;
+    theirs = base;
+    lock(theirs, 1);
+    plan::CasePlan undone = base;
+    undone.place() = {-1, 0};
+    CHECK(plan::merge(mine, theirs, nullptr).forwarded == std::vector<std::string>{"main"});
+    CHECK(is_locked(mine, 0, 1));
+    CHECK(plan::merge(undone, theirs, nullptr).added == std::vector<std::string>{"main (2)"});
+    CHECK_FALSE(is_locked(undone, 0, 0));
+}
+
+TEST_CASE("the alternative of an earlier merge moves on with the other side") {
+    plan::CasePlan base = three(), mine = base, theirs = base;
+    lock(mine, 0);
+    lock(theirs, 1);
+    plan::merge(mine, theirs, &base);
+    lock(theirs, 2);
+    CHECK(plan::merge(mine, theirs, &base).forwarded == std::vector<std::string>{"main (2)"});
+    REQUIRE(mine.alternatives.size() == 2);
+    CHECK((is_locked(mine, 1, 1) && is_locked(mine, 1, 2)));
+    CHECK((is_locked(mine, 0, 0) && !is_locked(mine, 0, 1)));
+}
+
+TEST_CASE("a merge that would need more alternatives than a run can hold changes nothing and says what to do") {
+    plan::CasePlan base = three(), mine = base, theirs = base;
+    for (int n = 1; n < 32; ++n) mine.alternatives.push_back({"of mine " + std::to_string(n), {}});
+    lock(theirs, 1);
+    // Steps of an alternative that moves on need no further one.
+    plan::CasePlan full = mine;
+    CHECK(plan::merge(full, theirs, &base).forwarded == std::vector<std::string>{"main"});
+    lock(mine, 0);
+    const std::string before = plan::content_of(mine);
+    CHECK_THROWS_WITH(plan::merge(mine, theirs, &base),
+                      Catch::Matchers::ContainsSubstring("33 alternatives together, and a plan has at most 32"));
+    CHECK(plan::content_of(mine) == before);
 }
 
 TEST_CASE("fragments that only the other plan has are added and steps still mean theirs") {

@@ -67,9 +67,12 @@ bool Desk::save_plan() {
             wants_plan_name_ = true;
             return false;
         }
-        const std::vector<std::string> added = plan_document_->save();
+        const plan::MergedAlternatives changed = plan_document_->save();
         std::string text = fmt::format("saved {}", plan_document_->file().string());
-        for (const std::string& name : added) text += fmt::format("; another program had changed it: '{}'", name);
+        for (const std::string& name : changed.added)
+            text += fmt::format("; another program had changed it: its steps are the alternative '{}'", name);
+        for (const std::string& name : changed.forwarded)
+            text += fmt::format("; another program had changed it: '{}' has its steps, too", name);
         bench_.tell(std::move(text));
         return true;
     } catch (const std::exception& error) {

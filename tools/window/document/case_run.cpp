@@ -208,7 +208,11 @@ void CaseRun::follow_plan() {
         const bool is_first = !of_run_;
         of_run_ = status->plan;
         if (is_first) steps_at_start_ = step_lines(*of_run_).size();
-        if (document_) document_->adopt(of_run_);
+        if (document_) try {
+                document_->adopt(of_run_);
+            } catch (const Error& error) {
+                bench_.tell(error.what(), true);
+            }
     }
     const bool shows_run = of_run_ && (is_live() || !document_);
     const auto& newest = shows_run || !document_ ? of_run_ : document_->newest();

@@ -4,7 +4,6 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/plan/plan_file.hpp"
 #include "assets/plan/plan_lock.hpp"
-#include "assets/plan/plan_merge.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/window/document/unsaved.hpp"
@@ -82,18 +81,25 @@ void PlanDocument::write(const plan::CasePlan& plan) const {
     plan::save_case_plan(relative, fs::is_symlink(file_) ? fs::canonical(file_) : file_);
 }
 
-std::vector<std::string> PlanDocument::save() {
+/// What recovery files contain is saved.
+void PlanDocument::remove_kept() noexcept {
+    kept_.remove();
+    std::error_code ignored;
+    for (const fs::path& file : std::exchange(contained_, {})) fs::remove(file, ignored);
+}
+
+plan::MergedAlternatives PlanDocument::save() {
     if (needs_name())
         throw Error(fmt::format("{} belongs to the library and cannot be changed; save the plan under another name",
                                 file_.string()));
     const plan::PlanLock lock(file_, lock_patience);
     plan::CasePlan merged = *plan_;
-    std::vector<std::string> added;
+    plan::MergedAlternatives changed;
     if (fs::exists(file_)) {
         plan::CasePlan there = plan::load_case_plan(file_);
         written_.merge(plan::make_files_absolute(there, folder()));
         if (plan::content_of(there) != saved_content_) {
-            added = plan::merge(merged, there, &saved_);
+            changed = plan::merge(merged, there, &saved_);
             // Versions of the run that goes on do not have these steps.
             if (!foreign_) foreign_base_ = saved_;
             foreign_ = std::move(there);
@@ -103,8 +109,8 @@ std::vector<std::string> PlanDocument::save() {
     write(merged);
     set(merged);
     set_saved(std::move(merged));
-    kept_.remove();
-    return added;
+    remove_kept();
+    return changed;
 }
 
 void PlanDocument::save_as(const fs::path& name, bool replaces) {
@@ -124,7 +130,7 @@ void PlanDocument::save_as(const fs::path& name, bool replaces) {
         throw;
     }
     set_saved(*plan_);
-    kept_.remove();
+    remove_kept();
 }
 
 EditedText PlanDocument::edited() const {
@@ -139,7 +145,7 @@ std::string PlanDocument::tend() {
 void PlanDocument::keep() noexcept {
     try {
         if (!has_unsaved_steps()) {
-            if (!is_saved_) kept_.remove();
+            if (!is_saved_) remove_kept();
             return;
         }
         const fs::path kept = kept_.keep(edited());
@@ -184,12 +190,16 @@ std::optional<fs::path> PlanDocument::offer() const {
 
 void PlanDocument::restore() {
     const fs::path file = offers_.back();
-    offers_.pop_back();
     plan::CasePlan plan = plan::load_case_plan(file);
     plan::make_files_absolute(plan, file.parent_path());
     // What another program has saved since is not lost.
     plan::merge(plan, saved_, nullptr);
-    // Steps of this window, and those restored earlier, keep their file.
+    if (has_unsaved_steps()) {
+        plan::merge(plan, *plan_, nullptr);
+        // Also those steps that are too young to be in it.
+        contained_.push_back(kept_.keep(edited()));
+    }
+    offers_.pop_back();
     kept_.continue_with(file);
     set(std::move(plan));
     begins_again_ = true;

@@ -4,6 +4,7 @@
 
 #include "assets/plan/case_plan.hpp"
 #include "assets/plan/plan_files.hpp"
+#include "assets/plan/plan_merge.hpp"
 #include "tools/window/document/kept_edits.hpp"
 
 #include <cstdint>
@@ -34,7 +35,8 @@ public:
     /// Increases with every change.
     std::int64_t version() const { return version_; }
 
-    /// The next version, with all steps of this one.
+    /// The next version, with all steps of this one. Throws Error if it cannot be combined with steps that another program
+    /// has saved; the document then stays as it is.
     void adopt(const std::shared_ptr<const plan::CasePlan>& newest);
     bool is_saved() const { return is_saved_; }
     /// Unsaved and not dropped.
@@ -45,9 +47,10 @@ public:
 
     /// The file cannot be changed: it belongs to the library.
     bool needs_name() const;
-    /// Writes the plan under its lock. If another program has changed the file meanwhile, its steps are added to the plan
-    /// as alternatives, whose names are returned: nothing is overwritten. Throws Error; the file then has its old content.
-    std::vector<std::string> save();
+    /// Writes the plan under its lock. If another program has changed the file meanwhile, its steps are merged into the plan
+    /// first (plan_merge.hpp); returns the alternatives that this has changed. Throws Error; the file then has its old
+    /// content.
+    plan::MergedAlternatives save();
     /// The same as another file, which is the document from now on. `replaces`: an existing file is overwritten. Throws
     /// Error.
     void save_as(const std::filesystem::path& file, bool replaces);
@@ -65,7 +68,7 @@ public:
     /// Finds recovery files of windows that ended without saving.
     void find_kept();
     std::optional<std::filesystem::path> offer() const;
-    /// Throws Error; the offer is then gone, its file is not.
+    /// Unsaved steps of this window become an alternative beside the restored ones. Throws Error; the offer then stays.
     void restore();
     void discard_offer();
     void postpone_offer();
@@ -74,6 +77,7 @@ private:
     void set(plan::CasePlan plan);
     void set_saved(plan::CasePlan plan);
     void write(const plan::CasePlan& plan) const;
+    void remove_kept() noexcept;
     EditedText edited() const;
 
     std::filesystem::path file_;
@@ -87,6 +91,7 @@ private:
     std::int64_t version_ = 0, dropped_version_ = -1;
     KeptEdits kept_{std::chrono::milliseconds(0)};
     std::vector<std::filesystem::path> offers_;
+    std::vector<std::filesystem::path> contained_;  ///< recovery files whose steps are all in the plan
 };
 
 }  // namespace tactus::window

@@ -60,12 +60,12 @@ TEST_CASE("an opened plan is saved where it was opened, with its paths as they w
     const std::string before = slurp(file);
     PlanDocument document(file);
     CHECK(document.is_saved());
-    CHECK(document.save().empty());
+    CHECK(document.save().added.empty());
     CHECK(slurp(file) == before);
     document.adopt(locked(document.plan(), 0));
     CHECK_FALSE(document.is_saved());
     CHECK(slurp(file) == before);
-    CHECK(document.save().empty());
+    CHECK(document.save().added.empty());
     CHECK(document.is_saved());
     const plan::CasePlan saved = plan::load_case_plan(file);
     CHECK(saved.fragments[0].file == "bones/a");
@@ -81,7 +81,7 @@ TEST_CASE("steps that another program has saved meanwhile become an alternative 
     document.adopt(mine);
     plan::CasePlan theirs = plan::load_case_plan(file);
     plan::save_case_plan(*locked(theirs, 1), file);
-    CHECK(document.save() == std::vector<std::string>{"main (2)"});
+    CHECK(document.save().added == std::vector<std::string>{"main (2)"});
     CHECK(document.take_begin_again());
     CHECK_FALSE(document.take_begin_again());
     const plan::CasePlan both = plan::load_case_plan(file);
@@ -91,7 +91,7 @@ TEST_CASE("steps that another program has saved meanwhile become an alternative 
     // The run knows nothing of them.
     document.adopt(locked(*mine, 1));
     CHECK(document.plan().steps.size() == 3);
-    CHECK(document.save().empty());
+    CHECK(document.save().added.empty());
     CHECK(plan::load_case_plan(file).alternatives.size() == 2);
 }
 
@@ -145,6 +145,66 @@ TEST_CASE("a window that is killed leaves its unsaved steps, which the next one 
     PlanDocument next(file);
     next.find_kept();
     CHECK_FALSE(next.offer());
+}
+
+TEST_CASE("restoring steps loses none of this window, however young, and saving leaves nothing to offer") {
+    const Folder folder;
+    const fs::path file = write_plan(folder), first = folder.path / "jaw.plan.unsaved.json";
+    {
+        PlanDocument document(file);
+        document.adopt(locked(document.plan(), 1));
+        document.keep();
+    }
+    PlanDocument document(file);
+    document.find_kept();
+    REQUIRE(document.offer() == first);
+    // In the same picture: nothing of it is in a file yet.
+    document.adopt(locked(document.plan(), 0));
+    document.restore();
+    CHECK(plan::state_of(document.plan()).arrangement.is_locked(1));
+    REQUIRE(document.plan().alternatives.size() == 2);
+    CHECK(plan::state_of(document.plan(), document.plan().alternatives[1].place.head).arrangement.is_locked(0));
+    // A window that is killed now has left all of it.
+    std::size_t kept_steps = 0;
+    for (const auto& entry : fs::directory_iterator(folder.path))
+        if (entry.path().filename().string().find("unsaved") != std::string::npos)
+            kept_steps += plan::load_case_plan(entry.path()).steps.size();
+    CHECK(kept_steps == 2);
+    document.save();
+    PlanDocument next(file);
+    next.find_kept();
+    CHECK_FALSE(next.offer());
+    CHECK(next.plan().steps.size() == 2);
+}
+
+TEST_CASE("an offer that cannot be read stays until it is answered otherwise") {
+    const Folder folder;
+    const fs::path file = write_plan(folder), kept = folder.path / "jaw.plan.unsaved.json";
+    {
+        PlanDocument document(file);
+        document.adopt(locked(document.plan(), 1));
+        document.keep();
+    }
+    const std::string whole = slurp(kept);
+    file::write_whole_file(kept, "{");
+    PlanDocument document(file);
+    document.find_kept();
+    CHECK_THROWS_AS(document.restore(), Error);
+    REQUIRE(document.offer() == kept);
+    file::write_whole_file(kept, whole);
+    document.restore();
+    CHECK(plan::state_of(document.plan()).arrangement.is_locked(1));
+}
+
+TEST_CASE("a file that another program alone has changed moves the document on") {
+    const Folder folder;
+    const fs::path file = write_plan(folder);
+    PlanDocument document(file);
+    plan::save_case_plan(*locked(plan::load_case_plan(file), 1), file);
+    CHECK(document.save().forwarded == std::vector<std::string>{"main"});
+    CHECK(document.is_saved());
+    CHECK(plan::state_of(document.plan()).arrangement.is_locked(1));
+    CHECK(plan::load_case_plan(file).alternatives.size() == 1);
 }
 
 TEST_CASE("steps that are not wanted leave no file, and a window that still runs keeps its own") {
