@@ -55,13 +55,13 @@ bool clear_line(std::string& text, int line) {
     return true;
 }
 
-class Surgeon {
+class ErrorRecovery {
 public:
-    Surgeon(std::string_view text, fs::path file, const CompilePatch& compile)
+    ErrorRecovery(std::string_view text, fs::path file, const CompilePatch& compile)
         : text_(text), file_(std::move(file)), compile_(compile) {}
 
-    Anatomy operate() {
-        take_apart();
+    RecoveredPatch run() {
+        leave_out_faults();
         std::ranges::stable_sort(made_.faults, [](const Fault& a, const Fault& b) {
             return std::pair(!a.file.empty(), a.line) < std::pair(!b.file.empty(), b.line);
         });
@@ -69,7 +69,7 @@ public:
     }
 
 private:
-    void take_apart() {
+    void leave_out_faults() {
         read();
         constexpr int max_rounds = 100;
         for (int round = 0; round < max_rounds; ++round)
@@ -237,7 +237,7 @@ private:
     const std::string text_;
     const fs::path file_;
     const CompilePatch& compile_;
-    Anatomy made_;
+    RecoveredPatch made_;
     std::map<std::string, std::string> nodes_;  ///< at fault, and why
     std::map<Place, std::string> wires_;
     std::set<std::string> known_;
@@ -266,8 +266,8 @@ std::optional<Correction> correction_in(std::string_view message) {
                       std::string(message.substr(begin, end - begin))};
 }
 
-Anatomy anatomy_of(std::string_view text, const fs::path& file, const CompilePatch& compile) {
-    return Surgeon(text, file, compile).operate();
+RecoveredPatch recover_patch(std::string_view text, const fs::path& file, const CompilePatch& compile) {
+    return ErrorRecovery(text, file, compile).run();
 }
 
 }  // namespace tactus::window

@@ -28,8 +28,8 @@ struct Fault {
     std::string wrong, suggestion;  ///< a misspelled word and the name that was probably meant
 };
 
-/// Analysis of a patch text with errors.
-struct Anatomy {
+/// What error recovery makes of a patch text: the errors, and the sound rest.
+struct RecoveredPatch {
     patch::Patch written;   ///< all that could be read
     std::vector<Fault> faults;  ///< in the order of the lines; each is reported once
     Unfinished unfinished;  ///< nodes that do not run, with their wires; with `faults` also the nodes at fault
@@ -42,7 +42,7 @@ using CompilePatch = std::function<std::optional<compile::Schedule>(patch::Patch
 /// The compiler stops at the first stage that reports errors. Therefore nodes and wires at fault are left out and the
 /// rest is compiled again, until no error is left or none can be assigned to a node or a wire. Lines that are no TOML
 /// are left out in the same way.
-Anatomy anatomy_of(std::string_view text, const std::filesystem::path& file, const CompilePatch& compile);
+RecoveredPatch recover_patch(std::string_view text, const std::filesystem::path& file, const CompilePatch& compile);
 
 /// Why an edit that leads from the errors `before` to those `after` is refused; nothing: it is not. A patch with errors is
 /// repaired one by one, and a repair may bring to light what the compiler could not see before: an edit is refused when it

@@ -74,7 +74,7 @@ Workbench::Judged Workbench::judge(std::string_view text) const {
     const fs::path file = editor_ ? editor_->file() : run::file_of(choice_);
     Judged judged;
     judged.running = without_mark(text);
-    Anatomy parts = anatomy_of(judged.running, file, [this](patch::Patch patch, patch::Problems& problems) {
+    RecoveredPatch parts = recover_patch(judged.running, file, [this](patch::Patch patch, patch::Problems& problems) {
         return plan_of(std::move(patch), choice_.overrides, choice_.seed, nullptr, problems);
     });
     if (parts.faults.empty() && !parts.unfinished.empty())
