@@ -20,6 +20,9 @@ inline constexpr std::size_t warning_count = 6;
 /// Names of the ports of the node 'task', in the order of Warning.
 inline constexpr std::array<std::string_view, warning_count> warning_names{"off_plan",   "too_deep",  "too_near",
                                                                            "over_force", "over_time", "over_heat"};
+/// The same for trainees.
+inline constexpr std::array<std::string_view, warning_count> warning_words{"off the plan",   "too deep",  "too near",
+                                                                           "too much force", "over time", "too hot"};
 
 /// An attempt at an instant.
 struct AttemptState {

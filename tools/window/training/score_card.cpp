@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <string>
@@ -15,9 +14,6 @@ namespace tactus::window {
 namespace {
 
 constexpr double mm = 1e3;
-constexpr std::array<const char*, training::warning_count> warning_words{"beside the plan", "too deep",  "too near",
-                                                                         "too much force",  "over time", "too hot"};
-
 using Better = ScoreRow::Better;
 
 void add_warnings(ScoreCard& card, const analysis::ScoredRun& run) {
@@ -35,7 +31,7 @@ void add_warnings(ScoreCard& card, const analysis::ScoredRun& run) {
     for (std::size_t w = 0; w < training::warning_count; ++w) {
         if (!applies(static_cast<Warning>(w))) continue;
         const double seconds = run.score.warnings_s[w];
-        card.rows.push_back({std::string("! ") + warning_words[w], "s", seconds, std::nullopt, Better::less,
+        card.rows.push_back({fmt::format("! {}", training::warning_words[w]), "s", seconds, std::nullopt, Better::less,
                              seconds > 0.0 ? "" : "never", seconds > 0.0});
     }
 }
@@ -89,8 +85,8 @@ ScoreCard card_of(const analysis::ScoredRun& run) {
     else if (severed > 0) card.notes.push_back("the bone is sawn through");
     if (s.shown_share && *s.shown_share < analysis::complete_share)
         card.notes.push_back(
-            fmt::format("the bone was felt in only {:.0f} % of the time of contact, as forces were "
-                        "away: do not compare this attempt with others",
+            fmt::format("forces were rendered for only {:.0f} % of the contact time: do not compare this attempt with "
+                        "others",
                         std::floor(100.0 * *s.shown_share)));
     card.notes.push_back("the scores are not validated");
     return card;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/training/train_panel.hpp"
 
+#include "assets/training/warnings.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/window/widgets/spots.hpp"
 #include "tools/window/widgets/theme.hpp"
@@ -11,19 +12,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace tactus::window {
 
 namespace {
 
 const char* const numbers[] = {"distance", "angle", "depth_left", "clearance", "elapsed"};
-struct Warning {
-    const char *port, *text;
-};
-constexpr Warning warnings[] = {{"off_plan", "beside the plan"}, {"too_deep", "too deep"},
-                                {"too_near", "too near"},        {"over_force", "too much force"},
-                                {"over_time", "over time"},      {"over_heat", "too hot for too long"}};
-
 /// A word and a large number at the right border; on a line of its own where both do not fit.
 void figure(const char* what, const std::string& value, const Fonts& fonts) {
     ImGui::PushFont(fonts.large);
@@ -99,7 +94,7 @@ void TrainPanel::follow(const std::shared_ptr<observe::Observer>& observer) {
     if (!wrench_.empty()) watch(wrench_);
     if (node_.empty()) return;
     for (const char* name : numbers) watch(node_ + "." + name);
-    for (const Warning& warning : warnings) watch(node_ + "." + warning.port);
+    for (const std::string_view warning : training::warning_names) watch(fmt::format("{}.{}", node_, warning));
 }
 
 double TrainPanel::number(const std::string& port) const {
@@ -181,11 +176,11 @@ void TrainPanel::figures(const Fonts& fonts) {
             figure(spared < 0.0 ? "inside what is spared" : "to what is spared", millimetres(node_ + ".clearance"),
                    fonts);
     } else if (!depth_.empty()) figure("depth", millimetres(depth_), fonts);
-    for (const Warning& warning : warnings) {
-        if (node_.empty() || !flag(node_ + "." + warning.port)) continue;
+    for (std::size_t w = 0; w < training::warning_count; ++w) {
+        if (node_.empty() || !flag(fmt::format("{}.{}", node_, training::warning_names[w]))) continue;
         ImGui::PushFont(fonts.bold);
         ImGui::PushStyleColor(ImGuiCol_Text, tone::bad);
-        ImGui::TextWrapped("! %s", warning.text);
+        ImGui::TextWrapped("! %s", training::warning_words[w].data());
         ImGui::PopStyleColor();
         ImGui::PopFont();
     }
