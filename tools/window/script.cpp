@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/terminal.hpp"
 #include "tools/window/desk/desk.hpp"
+#include "tools/window/frame/cut_letters.hpp"
 #include "tools/window/widgets/spot_list.hpp"
 #include "tools/window/widgets/spots.hpp"
 
@@ -29,7 +30,7 @@ const std::vector<std::string> commands{
     "hover",     "click",      "drag",    "wheel",      "wait",   "until",   "frames",    "size",    "minimise",
     "restore",   "screenshot", "close",   "say",        "from",   "stereo",  "clip",      "measure", "check",
     "scale",     "press",      "double",  "slide",      "pull",   "type",    "key",       "cost",    "head",
-    "display",   "offset",     "screens", "shut",       "layout", "instant", "text",      "spots"};
+    "display",   "offset",     "screens", "shut",       "layout", "instant", "text",      "spots",   "letters"};
 
 }  // namespace
 
@@ -197,6 +198,7 @@ bool Script::perform(const ScriptLine& line, Desk& desk, Window& window) {
     else if (is("measure")) desk.scene().is_measuring = true;
     else if (is("check")) bench.check_saved();
     else if (is("spots")) file::write_whole_file(line.word(1), spot_list() + desk.patch().place_list());
+    else if (is("letters")) want_cut_letters(line.word(1));
     else if (is("say")) bench.tell(line.word(1));
     else if (is("layout")) {
         const auto layout = layout_of_name(line.word(1));

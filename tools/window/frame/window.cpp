@@ -12,6 +12,7 @@
 #include "devices/display/gl_program.hpp"
 #include "devices/display/system_font.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/window/frame/cut_letters.hpp"
 #include "tools/window/widgets/theme.hpp"
 
 #include <fmt/format.h>
@@ -285,6 +286,7 @@ void Window::read_picture() {
 
 void Window::end() {
     ImGui::Render();
+    write_cut_letters();
     if (wants_picture_ && keeps_pixels_ != Keeps::yes) damage_->forget();
     const bool is_new = draw();
     if (std::exchange(wants_picture_, false)) read_picture();
