@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/plan/plan_command.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
 namespace tactus::plan {
 
 namespace {
@@ -13,6 +17,7 @@ public:
     void operator()(const SettleFragment& c) const noexcept {
         add(c.fragment), add(c.partner), add(c.pose);
         hash_.add_bytes(&c.fit, sizeof c.fit);
+        add(static_cast<int>(c.basis));
     }
     void operator()(const JoinFragments& c) const noexcept { add(c.fragment), add(c.other); }
     void operator()(const SplitFragment& c) const noexcept { add(c.fragment); }
@@ -36,7 +41,102 @@ private:
     Hash& hash_;
 };
 
+// Places in PlanCommandNumbers.
+constexpr std::size_t at_kind = 0, at_first = 1, at_second = 2, at_switch = 3, at_pose = 4, at_fit = 11;
+
+class CommandWriter {
+public:
+    explicit CommandWriter(PlanCommandNumbers& to) : to_(to) {}
+
+    void operator()(const PlaceFragment& c) const noexcept { first(c.fragment), pose(c.pose); }
+    void operator()(const SettleFragment& c) const noexcept {
+        first(c.fragment), second(c.partner), pose(c.pose);
+        to_[at_switch] = static_cast<double>(c.basis);
+        const FitNumbers& f = c.fit;
+        put(at_fit, {f.score, f.margin, f.rms, f.gap, f.penetration, f.overlap});
+    }
+    void operator()(const JoinFragments& c) const noexcept { first(c.fragment), second(c.other); }
+    void operator()(const SplitFragment& c) const noexcept { first(c.fragment); }
+    void operator()(const LockFragment& c) const noexcept {
+        first(c.fragment), to_[at_switch] = c.is_locked ? 1.0 : 0.0;
+    }
+    void operator()(const HideFragment& c) const noexcept { first(c.fragment); }
+    void operator()(const GoToAlternative& c) const noexcept { first(c.alternative); }
+    void operator()(const DropAlternative& c) const noexcept { first(c.alternative); }
+    template <class Bare>
+    void operator()(const Bare&) const noexcept {
+        static_assert(std::is_empty_v<Bare>, "a command whose fields are not among the numbers");
+    }
+
+private:
+    void first(int place) const noexcept { to_[at_first] = place; }
+    void second(int place) const noexcept { to_[at_second] = place; }
+    void pose(const Pose& p) const noexcept {
+        const Vec3& at = p.position;
+        const Quat& q = p.orientation;
+        put(at_pose, {at.x, at.y, at.z, q.w, q.x, q.y, q.z});
+    }
+    void put(std::size_t from, std::initializer_list<double> values) const noexcept {
+        std::ranges::copy(values, to_.begin() + static_cast<std::ptrdiff_t>(from));
+    }
+    PlanCommandNumbers& to_;
+};
+
+struct CommandReader {
+    const PlanCommandNumbers& from;
+
+    int whole(std::size_t at) const noexcept { return static_cast<int>(from[at]); }
+    Pose pose() const noexcept {
+        const double* const p = from.data() + at_pose;
+        return {Vec3(p[0], p[1], p[2]), Quat(p[3], p[4], p[5], p[6])};
+    }
+    void into(PlaceFragment& c) const noexcept { c = {whole(at_first), pose()}; }
+    void into(SettleFragment& c) const noexcept {
+        const double* const f = from.data() + at_fit;
+        c = {whole(at_first),
+             whole(at_second),
+             pose(),
+             {f[0], f[1], f[2], f[3], f[4], f[5]},
+             static_cast<FitBasis>(whole(at_switch))};
+    }
+    void into(JoinFragments& c) const noexcept { c = {whole(at_first), whole(at_second)}; }
+    void into(SplitFragment& c) const noexcept { c = {whole(at_first)}; }
+    void into(LockFragment& c) const noexcept { c = {whole(at_first), from[at_switch] != 0.0}; }
+    void into(HideFragment& c) const noexcept { c = {whole(at_first)}; }
+    void into(GoToAlternative& c) const noexcept { c = {whole(at_first)}; }
+    void into(DropAlternative& c) const noexcept { c = {whole(at_first)}; }
+    template <class Bare>
+    void into(Bare&) const noexcept {
+        static_assert(std::is_empty_v<Bare>, "a command whose fields are not among the numbers");
+    }
+
+    template <std::size_t kind = 0>
+    PlanCommand of_kind(std::size_t wanted) const noexcept {
+        if constexpr (kind + 1 < std::variant_size_v<PlanCommand>)
+            if (wanted != kind) return of_kind<kind + 1>(wanted);
+        std::variant_alternative_t<kind, PlanCommand> command;
+        into(command);
+        return command;
+    }
+};
+
 }  // namespace
+
+PlanCommandNumbers numbers_of(const PlanCommand& command) noexcept {
+    PlanCommandNumbers numbers{};
+    numbers[at_kind] = static_cast<double>(command.index() + 1);
+    std::visit(CommandWriter(numbers), command);
+    return numbers;
+}
+
+std::optional<PlanCommand> command_of(const PlanCommandNumbers& numbers) noexcept {
+    for (const std::size_t at : {at_kind, at_first, at_second, at_switch})
+        if (!(std::abs(numbers[at]) <= 1e6) || numbers[at] != std::floor(numbers[at])) return std::nullopt;
+    const double kind = numbers[at_kind];
+    if (kind < 1.0 || kind > static_cast<double>(std::variant_size_v<PlanCommand>)) return std::nullopt;
+    if (numbers[at_switch] < 0.0 || numbers[at_switch] > static_cast<double>(FitBasis::mirror)) return std::nullopt;
+    return CommandReader{numbers}.of_kind(static_cast<std::size_t>(kind) - 1);
+}
 
 void add_to(Hash& hash, const PlanCommand& command) noexcept {
     hash.add_word(command.index());

@@ -6,7 +6,10 @@
 #include "dsp/core/hash.hpp"
 #include "dsp/core/types.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 #include <variant>
 
@@ -26,11 +29,14 @@ struct PlaceFragment {
     int fragment = -1;
     Pose pose;
 };
+/// What vouches for a pose: a fit of fractures, or a surgeon's decision (tools/analysis/plan/plan_accept.hpp).
+enum class FitBasis : std::uint8_t { fracture, hand, mirror };
 /// The same at a fit to its partner; −1: the fit names none.
 struct SettleFragment {
     int fragment = -1, partner = -1;
     Pose pose;
     FitNumbers fit;
+    FitBasis basis = FitBasis::fracture;
 };
 /// The two fragments, and all that move with them, move together from now on.
 struct JoinFragments {
@@ -75,5 +81,14 @@ struct PlanRecord {
 
 /// Adds the fields of a command, and not the bytes between them.
 void add_to(Hash& hash, const PlanCommand& command) noexcept;
+
+/// A command as numbers, as it passes through the parameters of a node: kind (place in the variant, from 1; 0: none), two
+/// places (fragments, or an alternative), a switch (locked; a FitBasis), position, orientation (w x y z), FitNumbers.
+/// SI units. What a kind does not use is 0.
+inline constexpr std::size_t plan_command_numbers = 17;
+using PlanCommandNumbers = std::array<double, plan_command_numbers>;
+PlanCommandNumbers numbers_of(const PlanCommand& command) noexcept;
+/// None for numbers that are no command: an unknown kind, places that are not whole or beyond ±1e6. Poses are not checked.
+std::optional<PlanCommand> command_of(const PlanCommandNumbers& numbers) noexcept;
 
 }  // namespace tactus::plan

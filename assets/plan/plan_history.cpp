@@ -19,6 +19,15 @@ namespace {
 // Nine hours at a step per second. Later steps are kept too, but the oldest can then no longer be undone.
 constexpr std::size_t max_steps = 32768;
 
+std::string verdict_of_basis(FitBasis basis) {
+    switch (basis) {
+        case FitBasis::fracture: return std::string(fit::name_of(fit::FitVerdict::fit));
+        case FitBasis::hand: return "accepted by hand";
+        case FitBasis::mirror: return "accepted by mirror";
+    }
+    return {};
+}
+
 }  // namespace
 
 PlanHistory::PlanHistory(const CasePlan& plan)
@@ -187,7 +196,7 @@ PlanStep ChangedPlan::step_of(const PlanCommand& command, const fit::Arrangement
         const FitNumbers& fit = settled->fit;
         if (settled->partner >= 0)
             step.fit = PlanFit{plan_.fragments[static_cast<std::size_t>(settled->partner)].name,
-                               std::string(fit::name_of(fit::FitVerdict::fit)),
+                               verdict_of_basis(settled->basis),
                                fit.score,
                                fit.margin,
                                fit.rms,

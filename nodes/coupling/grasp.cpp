@@ -15,6 +15,7 @@ struct Grasp {
     In<Pose> hand{"pose of the hand in the scene", "m"};
     In<tactus::coupling::Scene> scene{"the bodies that can be grasped"};
     In<bool> trigger{"true: hold"};
+    In<bool> release{optional, "true: release the body; the trigger must be pressed anew to hold again"};
     Out<double> held{"place of the held body in the scene until its force has faded; -1: none"};
     Out<Pose> grip{"pose of the body in the frame of the hand", "m"};
     Out<bool> holding{"true until the body is released"};
@@ -27,8 +28,9 @@ struct Grasp {
 
     void process(const Tick& tick) noexcept {
         const bool wanted = trigger.get() && is_valid(hand.get());
-        if (place_ < 0 && wanted && !was_wanted_) take();
-        if (place_ >= 0 && !trigger.get()) holds_ = false;
+        const bool is_released = release.connected && release.get();
+        if (place_ < 0 && wanted && !was_wanted_ && !is_released) take();
+        if (place_ >= 0 && (!trigger.get() || is_released)) holds_ = false;
         was_wanted_ = wanted;
         const double change = fade > 0.0 ? tick.elapsed_seconds() / fade : 1.0;
         strength_ = std::clamp(strength_ + (holds_ ? change : -change), 0.0, 1.0);
@@ -67,6 +69,6 @@ private:
     Pose grip_;
 };
 
-TACTUS_NODE(Grasp, hand, scene, trigger, held, grip, holding, strength, reach, fade, fixed)
+TACTUS_NODE(Grasp, hand, scene, trigger, release, held, grip, holding, strength, reach, fade, fixed)
 
 }  // namespace tactus::nodes

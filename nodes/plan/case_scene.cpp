@@ -13,17 +13,56 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace tactus::nodes {
 
+/// The port of commands from outside, such as those of a window: parameters, so that a take and a log have them. The
+/// numbers of a command are set first, and its serial number last.
+struct CommandPort {
+    Param command{as_trigger, "0", "0", "12",
+                  "kind of a command from outside: 1 place, 2 settle, 3 join, 4 split, 5 lock, 6 hide, 7 show, 8 undo, "
+                  "9 redo, 10 go to an alternative, 11 drop one, 12 bring the one dropped last back; 0: none"};
+    Param command_first{as_trigger, "0", "-1", "1000000", "the fragment or the alternative that it means"};
+    Param command_second{as_trigger, "0", "-1", "1000000", "the partner of settle and join; -1: none"};
+    Param command_switch{as_trigger, "0", "0", "2",
+                         "lock: 1 locks, 0 unlocks; settle: what vouches for the pose, 0 the fracture, 1 a surgeon's "
+                         "eye, 2 the mirrored side"};
+    Param command_x{as_trigger, "0 m", "-1000 m", "1000 m", "position of the fragment's file"};
+    Param command_y{as_trigger, "0 m", "-1000 m", "1000 m", "the same"};
+    Param command_z{as_trigger, "0 m", "-1000 m", "1000 m", "the same"};
+    Param command_qw{as_trigger, "1", "-2", "2", "orientation of the fragment's file"};
+    Param command_qx{as_trigger, "0", "-2", "2", "the same"};
+    Param command_qy{as_trigger, "0", "-2", "2", "the same"};
+    Param command_qz{as_trigger, "0", "-2", "2", "the same"};
+    Param command_score{as_trigger, "0", "-1000000", "1000000", "of the fit"};
+    Param command_margin{as_trigger, "0", "-1000000", "1000000", "of the fit"};
+    Param command_rms{as_trigger, "0 m", "-1000 m", "1000 m", "of the fit"};
+    Param command_gap{as_trigger, "0 m", "-1000 m", "1000 m", "of the fit"};
+    Param command_penetration{as_trigger, "0 m", "-1000 m", "1000 m", "of the fit"};
+    Param command_overlap{as_trigger, "0 m^2", "-1000 m^2", "1000 m^2", "of the fit"};
+    Param command_number{as_trigger, "0", "0", "1000000000",
+                         "changed: the command is done once; set it last, to the output 'received' plus 1"};
+    TACTUS_GROUP(command, command_first, command_second, command_switch, command_x, command_y, command_z, command_qw,
+                 command_qx, command_qy, command_qz, command_score, command_margin, command_rms, command_gap,
+                 command_penetration, command_overlap, command_number)
+
+    plan::PlanCommandNumbers numbers() const noexcept {
+        return {command,        command_first, command_second, command_switch,      command_x,      command_y,
+                command_z,      command_qw,    command_qx,     command_qy,          command_qz,     command_score,
+                command_margin, command_rms,   command_gap,    command_penetration, command_overlap};
+    }
+};
+
 struct CaseScene {
     static constexpr auto about =
         "The fragments of a plan as one scene. The held fragment and its group follow the coupling. Releasing, "
         "settling, joining, splitting, locking and hiding are steps that can be undone, as are the steps already in "
-        "the plan. Every step is written to the plan's file soon after it is done.";
+        "the plan. Every step is written to the plan's file soon after it is done. A command from outside that would "
+        "move what a hand holds or touches first asks for its release.";
 
     In<Pose> moved{optional, "pose that the coupling gives the body at place 'which'", "m"};
     In<double> which{optional, "place of the held body; -1: none"};
@@ -50,6 +89,8 @@ struct CaseScene {
     Out<tactus::coupling::Scene> scene{"for grasp, coupling and fragment_matcher nodes"};
     Out<double> steps{"number of steps done, without undone ones"};
     Out<bool> settled{"the held body has been put where it fits"};
+    Out<double> received{"number of the last command from outside that was done or refused"};
+    Out<bool> release{"a command waits until the held body is released: for grasp.release"};
     Asset<plan::CaseBones> plan{"the plan with its fragments; new steps follow its current one"};
     Text file{"case.plan.json", "name of the plan file with the steps of the run, in the run folder; empty: none"};
     Param loose{"8 mm", "0.1 mm", "100 mm",
@@ -60,23 +101,15 @@ struct CaseScene {
                 {.kind = VisualKind::asset_bone, .value = "scene", .asset = "plan"}};
     }
 
-    Param choose{discrete, "-1", "-1", "15",
-                 "place of the body that join, split, lock and hide mean; -1: the one that was held last"};
-    Param alternative{discrete, "-1", "-1", "31",
-                      "changed: go to this alternative of the plan, the first is 0; their number: begin another one at "
-                      "the current state; -1: stay"};
-    Param drop{discrete, "-1", "-2", "31",
-               "changed: drop this alternative, which must not be the current one; its steps stay; -2: bring the one "
-               "dropped last back; -1: none"};
-    Param with{discrete, "-1", "-1", "15",
-               "place of the body that join puts together with it; -1: the partner of the fit"};
+    CommandPort port;
 
     void prepare(const Setup& setup) {
         if (plan->bones.size() > tactus::coupling::Scene::max_objects)
             setup.fail("plan '" + plan.name +
                        "' has more than 16 fragments; hiding does not help: plan the case in parts");
         name_ = setup.name;
-        for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_, &no_alternative_})
+        for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_, &no_alternative_, &locked_,
+                               &no_fragment_, &no_command_, &not_released_})
             notice->attach(setup);
         bodies_ = std::make_unique<CaseBodies>(plan->bones);
         if (plan->plan.alternatives.size() > plan::PlanHistory::max_alternatives)
@@ -85,8 +118,8 @@ struct CaseScene {
         history_ = std::make_unique<plan::PlanHistory>(plan->plan);
         now_ = std::make_unique<fit::Arrangement>(history_->now());
         given_ = 0;
-        wanted_alternative_ = alternative;
-        wanted_drop_ = drop;
+        received_ = 0.0;
+        waits_since_ = -1;
         if (!file.value.empty()) {
             keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
             stream_ = &setup.host->record({file.value, "", &plan_record_type, setup.period, keeper_}, setup.where);
@@ -98,7 +131,7 @@ struct CaseScene {
     void process(const Tick& tick) noexcept {
         follow(tick);
         press(tick);
-        choose_alternative(tick);
+        receive(tick);
         publish();
     }
 
@@ -139,13 +172,14 @@ private:
     void press(const Tick& tick) noexcept {
         const bool settles = edge(settle, 0) && holding_;
         if (settles && !has_fit()) no_fit_.tell();
-        if (settles && has_fit() && moved.connected && is_valid(moved.get()) && give(tick, settling())) {
+        if (settles && has_fit() && moved.connected && is_valid(moved.get()) &&
+            give(tick, settling()) == plan::PlanHistory::Outcome::done) {
             settled_ = true;
             let_at_ = middle_at(file_pose(last_, {moved->position, glm::normalize(moved->orientation)}));
         }
-        const int meant = place_of(choose, last_);
+        const int meant = last_;
         if (edge(join, 1) && meant >= 0) {
-            const int other = place_of(with, partner_place());
+            const int other = partner_place();
             keep_held(tick);
             if (other >= 0) give(tick, plan::JoinFragments{meant, other});
         }
@@ -167,23 +201,67 @@ private:
         }
         const bool back = edge(undo, 4), on = edge(redo, 5);
         if ((back || on) && holding_) held_back_.tell();
-        else if (back != on) {
-            const plan::PlanCommand command =
-                back ? plan::PlanCommand(plan::UndoStep{}) : plan::PlanCommand(plan::RedoStep{});
-            if (!give(tick, command)) (back ? no_earlier_ : no_later_).tell();
-        }
+        else if (back) tell(give(tick, plan::UndoStep{}));
+        else if (on) tell(give(tick, plan::RedoStep{}));
     }
 
-    /// Applies a command to the plan, shows the result and records it. Returns false if it changed nothing.
-    bool give(const Tick& tick, const plan::PlanCommand& command) noexcept {
-        const bool is_done = history_->apply(command) == plan::PlanHistory::Outcome::done;
+    /// Does the command at the port once. One that may change the force on a hand waits until the hand has released its
+    /// body: grasp then fades the last force, whatever the scene becomes.
+    void receive(const Tick& tick) noexcept {
+        const double number = port.command_number;
+        const bool is_new = number != received_ && number > 0.0;
+        const std::optional<plan::PlanCommand> command = is_new ? plan::command_of(port.numbers()) : std::nullopt;
+        if (command && holding_ && may_be_felt(*command)) {
+            if (waits_since_ < 0) waits_since_ = tick.index;
+            if (seconds((tick.index - waits_since_) * tick.period) < release_within_s) return;
+            not_released_.tell();
+        } else if (command) {
+            const std::optional<Pose> in_hand = holding_ ? std::optional(now_->pose(last_)) : std::nullopt;
+            tell(give(tick, *command));
+            // Where the hand is now is no step yet, and stays.
+            if (in_hand && now_->move(last_, *in_hand)) bodies_->show_unit(*now_, last_);
+        } else if (is_new) no_command_.tell();
+        if (is_new) received_ = number;
+        waits_since_ = -1;
+    }
+
+    /// Whether a command may move or uncover what the held body touches.
+    bool may_be_felt(const plan::PlanCommand& command) const noexcept {
+        const auto is_with_held = [this](int fragment) {
+            return fragment >= 0 && fragment < static_cast<int>(bodies_->count()) &&
+                   now_->move_together(fragment, last_);
+        };
+        if (const auto* joined = std::get_if<plan::JoinFragments>(&command))
+            return is_with_held(joined->fragment) || is_with_held(joined->other);
+        if (const auto* split = std::get_if<plan::SplitFragment>(&command)) return is_with_held(split->fragment);
+        if (const auto* lock = std::get_if<plan::LockFragment>(&command)) return is_with_held(lock->fragment);
+        return true;
+    }
+
+    /// Applies a command to the plan, shows the result and records it. If the outcome is not `done`, it changed nothing.
+    plan::PlanHistory::Outcome give(const Tick& tick, const plan::PlanCommand& command) noexcept {
+        const plan::PlanHistory::Outcome outcome = history_->apply(command);
         // What the hand has moved since the last step is part of the command, or void.
         *now_ = history_->now();
         bodies_->arrange(*now_);
-        if (!is_done) return false;
+        if (outcome != plan::PlanHistory::Outcome::done) return outcome;
         const plan::PlanRecord record{given_++, command};
         if (stream_ && !stream_->write(tick.index, &record, 1, sizeof record)) not_kept_ = true;
-        return true;
+        return outcome;
+    }
+
+    /// Why a command was not done.
+    void tell(plan::PlanHistory::Outcome outcome) noexcept {
+        using enum plan::PlanHistory::Outcome;
+        switch (outcome) {
+            case done:
+            case unchanged: break;
+            case locked: locked_.tell(); break;
+            case no_such_fragment: no_fragment_.tell(); break;
+            case nothing_to_undo: no_earlier_.tell(); break;
+            case nothing_to_redo: no_later_.tell(); break;
+            case no_such_alternative: no_alternative_.tell(); break;
+        }
     }
 
     plan::SettleFragment settling() const noexcept {
@@ -192,24 +270,6 @@ private:
                 partner_place(),
                 file_pose(last_, {target->position, glm::normalize(target->orientation)}),
                 {figure(score), figure(margin), figure(rms), figure(gap), figure(penetration), figure(overlap)}};
-    }
-
-    /// Whether a parameter was set to something else; it is then as it was set.
-    static bool is_changed(const Param& param, double& was) noexcept {
-        return param != std::exchange(was, static_cast<double>(param)) && param != -1.0;
-    }
-
-    void choose_alternative(const Tick& tick) noexcept {
-        const bool goes = is_changed(alternative, wanted_alternative_), drops = is_changed(drop, wanted_drop_);
-        if (!goes && !drops) return;
-        if (holding_) return held_back_.tell();
-        const double to = alternative, away = drop;
-        if ((goes && to != std::floor(to)) || (drops && away != std::floor(away))) return no_alternative_.tell();
-        if (goes && !give(tick, plan::GoToAlternative{static_cast<int>(to)})) no_alternative_.tell();
-        if (!drops) return;
-        const plan::PlanCommand command = away < 0.0 ? plan::PlanCommand(plan::RestoreAlternative{})
-                                                     : plan::PlanCommand(plan::DropAlternative{static_cast<int>(away)});
-        if (!give(tick, command)) no_alternative_.tell();
     }
 
     /// True when there is a fit for the held body.
@@ -237,11 +297,6 @@ private:
         return place >= 0.0 && place < static_cast<double>(bodies_->count()) ? static_cast<int>(place) : -1;
     }
 
-    /// The place that a parameter gives, or another one.
-    int place_of(const Param& given, int otherwise) const noexcept {
-        return given >= 0.0 && given < static_cast<double>(bodies_->count()) ? static_cast<int>(given) : otherwise;
-    }
-
     bool edge(const In<bool>& button, std::size_t n) noexcept {
         const bool now = button.connected && button.get(), pressed = now && !was_[n];
         was_[n] = now;
@@ -254,9 +309,13 @@ private:
         scene = bodies_->scene();
         steps = static_cast<double>(history_->done());
         settled = settled_;
+        received = received_;
+        release = waits_since_ >= 0;
     }
 
-    double wanted_alternative_ = -1.0, wanted_drop_ = -1.0;
+    static constexpr double release_within_s = 0.25;  // a patch without the wire to grasp never releases
+    double received_ = 0.0;
+    std::int64_t waits_since_ = -1;  // tick from which on a command waits for the release; -1: none does
     std::unique_ptr<CaseBodies> bodies_;
     std::unique_ptr<fit::Arrangement> now_;  // with what the hand has done since the last step
     std::unique_ptr<plan::PlanHistory> history_;
@@ -271,14 +330,19 @@ private:
     Notice held_back_{"nothing is undone or redone while a fragment is held: let it go first"};
     Notice no_earlier_{"there is no step to undo"};
     Notice no_later_{"there is no step to redo"};
-    Notice no_alternative_{
-        "there is no such alternative to go to, to drop or to bring back; they have whole numbers from 0 on"};
+    Notice no_alternative_{"there is no such alternative to go to, to drop or to bring back"};
+    Notice locked_{"nothing was moved: the fragment, or one of its group, is locked"};
+    Notice no_fragment_{"a command from outside names a fragment or a pose that is not there"};
+    Notice no_command_{"a command from outside has no such kind, or names no whole number of a fragment"};
+    Notice not_released_{
+        "a command was not done, because a hand holds a fragment and does not release it: let it go first, or wire "
+        "'release' of the case to 'release' of the grasp"};
     Notice no_fit_{"not settled: the held fragment has no fit where it is"};
 };
 
 TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, gap, penetration,
-            overlap, settle, join, split, lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose,
-            choose, with, alternative, drop)
+            overlap, settle, join, split, lock, hide, show, undo, redo, scene, steps, settled, received, release, plan,
+            file, loose, port)
 TACTUS_VISUALS(CaseScene)
 
 }  // namespace tactus::nodes

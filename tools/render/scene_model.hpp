@@ -106,6 +106,9 @@ public:
     /// Draws the fragments of the plan a second time from the next picture on, see-through and in another colour, where
     /// these poses of their files differ from those of the scene; empty: no longer. `name`: for the legend.
     void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
+    /// Poses of the files of the plan's fragments, by place, that are drawn from the next picture on in place of those of
+    /// the scene; empty: none. For what a person moves and is no step yet.
+    void use_poses(std::vector<std::optional<Pose>> poses) { moved_ = std::move(poses); }
     /// The plan of the scene as it is now: from the next picture on its vessels, plates, implants and sites are drawn in
     /// place of those of the file with which the scene began. `file`: the plan's, now; `written`: when.
     void use_plan(const std::filesystem::path& file, const plan::CasePlan& plan,
@@ -297,6 +300,7 @@ private:
     std::map<std::string, Densities> densities_;  // by path
     std::vector<std::optional<Pose>> compared_;
     std::string compared_name_;
+    std::vector<std::optional<Pose>> moved_;
     std::map<std::size_t, PlanPiece> pieces_;
     std::map<std::size_t, std::uint64_t> content_at_;  // of the plan's scene: what was seen last, by place
     bool has_made_scan_ = false, is_making_scan_ = false;  ///< in the last picture; some are still to be made

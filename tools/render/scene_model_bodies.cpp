@@ -94,7 +94,8 @@ std::vector<std::optional<Pose>> SceneModel::plan_poses() const {
             const auto known = bodies_.find(object.body);
             all.emplace_back();
             if (object.body != 0 && known != bodies_.end() && known->second.body && is_valid(object.pose))
-                all.back() = object.pose * known->second.body->home.inverse();
+                all.back() =
+                    i < moved_.size() && moved_[i] ? *moved_[i] : object.pose * known->second.body->home.inverse();
         }
         break;
     }
@@ -191,6 +192,7 @@ void SceneModel::show_bodies() {
             const auto hand = held ? pose_of(held->hand) : std::nullopt;
             if (held)
                 if (const auto now = pose_of(held->pose)) pose = *now;
+            if (!scene->plan.empty() && i < moved_.size() && moved_[i]) pose = *moved_[i] * mesh->body->home;
             if (!scene->plan.empty()) content_at_[i] = object.body;
             const bool is_shown = is_part_shown(name, colour);
             Part& part = parts_.back();

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <bit>
+#include <limits>
 #include <set>
 
 using namespace tactus;
@@ -114,6 +115,39 @@ TEST_CASE("a command that is refused changes nothing and says why") {
     CHECK(plan::text_of(Outcome::locked).find("locked") != std::string_view::npos);
 }
 
+TEST_CASE("a command that passes as numbers is the same to the bit, and numbers that are none are refused") {
+    const auto hash_of = [](const plan::PlanCommand& command) {
+        Hash hash;
+        plan::add_to(hash, command);
+        return hash.value();
+    };
+    std::set<std::size_t> kinds;
+    for (std::uint64_t n = 0; n < 300; ++n) {
+        plan::PlanCommand command = any(Random{7}, n);
+        if (auto* const settled = std::get_if<plan::SettleFragment>(&command))
+            settled->basis = n % 2 == 0 ? plan::FitBasis::hand : plan::FitBasis::mirror;
+        const auto read = plan::command_of(plan::numbers_of(command));
+        REQUIRE(read);
+        CHECK(hash_of(*read) == hash_of(command));
+        kinds.insert(command.index());
+    }
+    CHECK(kinds.size() == std::variant_size_v<plan::PlanCommand>);
+    for (const double kind : {0.0, -1.0, 0.5, 13.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+        plan::PlanCommandNumbers numbers = plan::numbers_of(plan::PlaceFragment{1, at(0.1)});
+        numbers[0] = kind;
+        CHECK_FALSE(plan::command_of(numbers));
+    }
+    plan::PlanCommandNumbers numbers = plan::numbers_of(plan::PlaceFragment{1, at(0.1)});
+    numbers[1] = 1.5;
+    CHECK_FALSE(plan::command_of(numbers));
+}
+
+TEST_CASE("a decision of a surgeon is a step that names what it rests on") {
+    plan::ChangedPlan changed(five());
+    REQUIRE(changed.apply(plan::SettleFragment{1, 0, at(0.1), {}, plan::FitBasis::hand}, "command") == Outcome::done);
+    CHECK(changed.plan().steps.back().fit->verdict == "accepted by hand");
+}
+
 TEST_CASE("equal commands have equal hashes whatever lies between their fields, and others do not") {
     const auto hash_of = [](const plan::PlanCommand& command, unsigned char filling) {
         alignas(plan::PlanCommand) std::array<unsigned char, sizeof(plan::PlanCommand)> bytes;
@@ -127,6 +161,7 @@ TEST_CASE("equal commands have equal hashes whatever lies between their fields, 
                                      plan::PlaceFragment{1, at(0.2)},
                                      plan::SettleFragment{1, 2, at(0.1), {}},
                                      plan::SettleFragment{1, 2, at(0.1), {0.5, 0, 0, 0, 0, 0}},
+                                     plan::SettleFragment{1, 2, at(0.1), {}, plan::FitBasis::hand},
                                      plan::LockFragment{1, true},
                                      plan::LockFragment{1, false},
                                      plan::UndoStep{},

@@ -9,6 +9,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <iterator>
+#include <tuple>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -28,7 +30,8 @@ struct Session {
     std::int64_t settle = 1'000'000, release = 1'000'000, undo = 1'000'000, redo = 1'000'000, join = 1'000'000,
                  split = 1'000'000;
     Pose at = beside, fit;
-    double target_of = 1.0;
+    double target_of = 1.0, partner = 0.0;
+    int commands = 0;
     std::vector<const char*> buttons{"lock", "hide", "show"};  ///< that nobody presses
 
     void run(std::int64_t ticks) {
@@ -41,7 +44,7 @@ struct Session {
         node.feed<bool>("holding", [this](std::int64_t k) { return k < release; });
         node.feed<Pose>("target", fit * home_of(1));
         node.feed<bool>("fits", true);
-        node.feed<double>("partner", 0.0).feed<double>("target_of", target_of);
+        node.feed<double>("partner", partner).feed<double>("target_of", target_of);
         double figure = 0.1;
         for (const char* number : {"score", "margin", "rms", "gap", "penetration", "overlap"})
             node.feed<double>(number, figure), figure *= 2.0;
@@ -53,6 +56,18 @@ struct Session {
         press("split", &split);
         node.prepare();
         node.run(ticks);
+    }
+    /// A command from outside, as a window gives it.
+    void command(const plan::PlanCommand& command) {
+        constexpr const char* names[] = {"command",        "command_first", "command_second", "command_switch",
+                                         "command_x",      "command_y",     "command_z",      "command_qw",
+                                         "command_qx",     "command_qy",    "command_qz",     "command_score",
+                                         "command_margin", "command_rms",   "command_gap",    "command_penetration",
+                                         "command_overlap"};
+        const plan::PlanCommandNumbers numbers = plan::numbers_of(command);
+        static_assert(std::size(names) == std::tuple_size_v<plan::PlanCommandNumbers>);
+        for (std::size_t n = 0; n < numbers.size(); ++n) node.set_value(names[n], numbers[n]);
+        node.set_value("command_number", static_cast<double>(++commands));
     }
     coupling::Scene scene() const { return node.last<coupling::Scene>("scene"); }
     Pose file_pose(int n) const {
@@ -222,7 +237,7 @@ TEST_CASE("the scene of a run and the plan of its commands have the same poses t
     Session session;
     session.join = 100;
     session.release = 300;
-    session.node.set("choose", "2").set("with", "1");
+    session.partner = 2.0;
     session.run(250);
     session.node.feed<Pose>("moved", Pose{Vec3(7.0, -3.0, 2.0) * mm, rotation_by({0.3, -0.2, 0.1})} * home_of(1));
     session.node.run(200);
@@ -253,20 +268,100 @@ TEST_CASE("undo while a fragment is held does nothing and says why, and so does 
     CHECK(nothing[0].find("no step to redo") != std::string::npos);
 }
 
-TEST_CASE("buttons mean the fragments that are chosen, and without a choice the one held last") {
+TEST_CASE("commands from outside are each done once and in their order, and the plan has them") {
     Session session;
     session.release = 100;
-    session.join = 300;
-    session.split = 600;
-    session.node.set("choose", "2").set("with", "0");
-    session.run(500);
-    const coupling::Scene joined = session.scene();
-    CHECK(joined.objects[2].unit >= 0);
-    CHECK(joined.objects[2].unit == joined.objects[0].unit);
-    CHECK(joined.objects[1].unit == -1);
-    CHECK(session.plan().steps.back().fragments == std::vector<int>{2, 0});
-    session.node.run(500);
-    CHECK(session.scene().objects[2].unit == -1);
+    session.run(200);
+    NodeHarness& node = session.node;
+    const Pose place{Vec3(7.0, -3.0, 2.0) * mm, rotation_by({0.3, -0.2, 0.1})};
+    session.command(plan::PlaceFragment{2, place});
+    node.run(10);
+    CHECK(node.last<double>("received") == 1.0);
+    CHECK(session.plan().steps.back().poses[0].position == place.position);
+    CHECK(off(session.file_pose(2), place) < 1e-15);
+    session.command(plan::SettleFragment{1, 0, place, {0.9, 0.2, 1e-4, 2e-4, 3e-4, 4e-5}, plan::FitBasis::hand});
+    node.run(10);
+    const plan::PlanStep settled = session.plan().steps.back();
+    CHECK(settled.fit->verdict == "accepted by hand");
+    CHECK(settled.fit->gap == 2e-4);
+    session.command(plan::JoinFragments{2, 1});
+    node.run(300);
+    CHECK(session.scene().objects[2].unit == session.scene().objects[1].unit);
+    CHECK(session.plan().steps.back().fragments == std::vector<int>{2, 1});
+    // Both go together.
+    const std::size_t steps = session.plan().steps.size();
+    session.command(plan::PlaceFragment{1, Pose{}});
+    node.run(300);
+    CHECK(session.plan().steps.size() == steps + 1);
+    CHECK(session.plan().steps.back().fragments == std::vector<int>{1, 2});
+    for (int n = 0; n < 3; ++n)
+        CHECK(off(session.file_pose(n), plan::state_of(session.plan()).arrangement.pose(n)) < 1e-12);
+}
+
+TEST_CASE("commands from outside that cannot be done are received, and say why") {
+    Session session;
+    session.release = 0;
+    session.run(50);
+    NodeHarness& node = session.node;
+    const std::size_t steps = session.plan().steps.size();
+    const auto said = [&](const plan::PlanCommand& command) {
+        take_notices(node.host);
+        session.command(command);
+        node.run(20);
+        CHECK(node.last<double>("received") == session.commands);
+        const auto told = take_notices(node.host);
+        return told.empty() ? std::string() : told[0];
+    };
+    using Catch::Matchers::ContainsSubstring;
+    CHECK_THAT(said(plan::PlaceFragment{0, beside}), ContainsSubstring("is locked"));
+    CHECK_THAT(said(plan::PlaceFragment{9, beside}), ContainsSubstring("not there"));
+    CHECK_THAT(said(plan::GoToAlternative{7}), ContainsSubstring("no such alternative"));
+    CHECK_THAT(said(plan::DropAlternative{0}), ContainsSubstring("no such alternative"));
+    CHECK_THAT(said(plan::RedoStep{}), ContainsSubstring("no step to redo"));
+    take_notices(node.host);
+    node.set("command", "1").set("command_first", "0.5").set_value("command_number", ++session.commands);
+    node.run(20);
+    const auto told = take_notices(node.host);
+    REQUIRE_FALSE(told.empty());
+    CHECK_THAT(told[0], ContainsSubstring("no such kind"));
+    CHECK(session.plan().steps.size() == steps);
+}
+
+TEST_CASE("a command that a hand may feel asks for its release and is done after it") {
+    Session session;
+    session.run(100);
+    NodeHarness& node = session.node;
+    const Pose place{Vec3(0.0, 40.0, 0.0) * mm, {1.0, 0.0, 0.0, 0.0}};
+    // Nothing of the held one: it is done at once.
+    session.command(plan::LockFragment{2, true});
+    node.run(10);
+    CHECK(node.last<double>("received") == 1.0);
+    CHECK_FALSE(node.last<bool>("release"));
+    session.command(plan::PlaceFragment{1, place});
+    node.run(20);
+    CHECK(node.last<bool>("release"));
+    CHECK(node.last<double>("received") == 1.0);
+    CHECK(off(session.file_pose(1), beside) < 1e-9);
+    session.release = 0;
+    node.run(5);
+    CHECK_FALSE(node.last<bool>("release"));
+    CHECK(node.last<double>("received") == 2.0);
+    CHECK(off(session.file_pose(1), place) < 1e-12);
+    // Where the hand left it is a step of its own.
+    const std::vector<plan::PlanStep> steps = session.plan().steps;
+    REQUIRE(steps.size() >= 2);
+    REQUIRE(steps[steps.size() - 2].poses.size() == 1);
+    CHECK(off(steps[steps.size() - 2].poses[0], beside) < 1e-9);
+
+    // A patch in which nothing releases the hand.
+    Session held;
+    held.run(100);
+    held.command(plan::UndoStep{});
+    held.node.run(400);
+    CHECK(held.node.last<double>("received") == 1.0);
+    const auto told = take_notices(held.node.host);
+    REQUIRE_FALSE(told.empty());
+    CHECK(told[0].find("wire 'release'") != std::string::npos);
 }
 
 TEST_CASE("a run begins an alternative, goes between them, drops one and brings it back, and its plan agrees") {
@@ -276,8 +371,8 @@ TEST_CASE("a run begins an alternative, goes between them, drops one and brings 
     NodeHarness& node = session.node;
     const Pose first = session.file_pose(1);
     REQUIRE(off(first, beside) < 1e-9);
-    const auto go = [&](const char* param, const char* to) {
-        node.set(param, to);
+    const auto go = [&](const plan::PlanCommand& command) {
+        session.command(command);
         node.run(20);
     };
     const auto agrees = [&](int current, std::size_t count) {
@@ -291,7 +386,7 @@ TEST_CASE("a run begins an alternative, goes between them, drops one and brings 
     };
     agrees(0, 1);
     // A new one begins where the plan is; undo in it leaves the first as it was.
-    go("alternative", "1");
+    go(plan::GoToAlternative{1});
     agrees(1, 2);
     CHECK(session.plan().alternatives[1].name == "alternative 2");
     session.undo = 260;
@@ -299,35 +394,26 @@ TEST_CASE("a run begins an alternative, goes between them, drops one and brings 
     const Pose second = session.file_pose(1);
     REQUIRE(off(second, first) > 1e-4);
     agrees(1, 2);
-    go("alternative", "0");
+    go(plan::GoToAlternative{0});
     CHECK(same_bits(session.file_pose(1), first));
     agrees(0, 2);
-    go("alternative", "1");
+    go(plan::GoToAlternative{1});
     CHECK(same_bits(session.file_pose(1), second));
     agrees(1, 2);
-    go("drop", "0");
+    go(plan::DropAlternative{0});
     agrees(0, 1);
-    go("drop", "-2");
+    go(plan::RestoreAlternative{});
     agrees(0, 2);
-    go("alternative", "-1");
-    go("alternative", "1");
+    go(plan::GoToAlternative{1});
     CHECK(same_bits(session.file_pose(1), first));
     agrees(1, 2);
     // What is not there is refused, and said.
     take_notices(node.host);
-    go("alternative", "7");
+    go(plan::GoToAlternative{7});
     agrees(1, 2);
-    go("drop", "1");
+    go(plan::DropAlternative{1});
     agrees(1, 2);
     const auto told = take_notices(node.host);
     REQUIRE_FALSE(told.empty());
     CHECK(told[0].find("no such alternative") != std::string::npos);
-    // A place between two is none.
-    go("drop", "0.5");
-    go("alternative", "0.5");
-    go("drop", "-1.5");
-    agrees(1, 2);
-    const auto fractions = take_notices(node.host);
-    REQUIRE_FALSE(fractions.empty());
-    CHECK(fractions[0].find("whole numbers") != std::string::npos);
 }

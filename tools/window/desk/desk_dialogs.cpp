@@ -49,8 +49,12 @@ EditButtons Desk::edit_buttons() {
     CaseRun& run = plan_.case_run();
     const std::vector<StepLine>& steps = run.steps();
     const bool has_done = !steps.empty() && steps.front().is_done, has_undone = !steps.empty() && !steps.back().is_done;
-    return {has_done && run.can_press("undo"), has_undone && run.can_press("redo"), is_saved,
-            [&run] { run.press("undo"); },     [&run] { run.press("redo"); },       [this] { save(); }};
+    return {has_done && run.can_give(),
+            has_undone && run.can_give(),
+            is_saved,
+            [&run] { run.give(plan::UndoStep{}); },
+            [&run] { run.give(plan::RedoStep{}); },
+            [this] { save(); }};
 }
 
 void Desk::save() {
@@ -120,14 +124,18 @@ void Desk::open_plan(std::unique_ptr<PlanDocument> plan) {
 }
 
 void Desk::tend_plan() {
-    if (!plan_document_) return;
-    if (std::string problem = plan_document_->tend(); !problem.empty()) bench_.tell(std::move(problem), true);
-    if (std::exchange(shows_unsaved_, !plan_document_->is_saved()) == plan_document_->is_saved()) show_title();
+    if (plan_document_) {
+        if (std::string problem = plan_document_->tend(); !problem.empty()) bench_.tell(std::move(problem), true);
+        if (std::exchange(shows_unsaved_, !plan_document_->is_saved()) == plan_document_->is_saved()) show_title();
+    }
     const CaseRun& run = plan_.case_run();
     if (!run.is_there()) return;
     const RunStatus::State state = bench_.status()->state;
-    if (state == RunStatus::State::over || state == RunStatus::State::loading)
-        preview_.tend(plan_document_->newest(), run.scene_port());
+    const bool has_no_run = state == RunStatus::State::over || state == RunStatus::State::loading;
+    if (plan_document_ && has_no_run) preview_.tend(plan_document_->newest(), run.scene_port());
+    // In a run its bodies are for those that the mouse moves.
+    else if (run.newest() && plan_.mover().needs_bodies()) preview_.tend(run.newest(), run.scene_port());
+    plan_.mover().tend(preview_.parts());
     if (std::exchange(told_problem_, preview_.problem()) != preview_.problem() && !preview_.problem().empty())
         bench_.tell(preview_.problem(), true);
 }

@@ -77,7 +77,6 @@ void CaseRun::follow_patch() {
     matcher_.clear();
     holding_.clear();
     which_.clear();
-    buttons_.clear();
     hand_buttons_.clear();
     if (!bench_.plan()) return;
     const compile::Schedule& plan = *bench_.plan();
@@ -97,10 +96,6 @@ void CaseRun::follow_patch() {
         if (node.type->name == "case_scene") {
             node_ = node.name;
             for (const AssetParam* asset : node.assets) asset_ = asset->name;
-            for (const char* input : {"undo", "redo", "join", "split", "lock", "hide", "show", "settle"}) {
-                const Source from = source_of(plan, node, input);
-                if (from.node && from.node->type->name == "button") buttons_[input] = from.node->name;
-            }
             const auto port_of = [&](const char* input) {
                 const Source from = source_of(plan, node, input);
                 return from.node ? from.node->name + "." + from.output : std::string();
@@ -132,7 +127,7 @@ void CaseRun::watch(const std::shared_ptr<observe::Observer>& observer) {
     if (!observer_ || !is_there()) return;
     if (!matcher_.empty())
         for (const char* figure : figures) watched_.push_back(matcher_ + "." + figure);
-    for (const std::string& port : {holding_, which_, node_ + ".steps"})
+    for (const std::string& port : {holding_, which_, node_ + ".steps", node_ + ".received"})
         if (!port.empty()) watched_.push_back(port);
     for (const std::string& port : watched_) observer_->watch(port, observe::Watch::latest, this);
 }
@@ -150,15 +145,18 @@ void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
         of_run_.reset();
         steps_.clear();
         steps_done_ = -1.0;
+        held_last_ = -1;
     }
     if (!is_there()) return;
-    commands_.tend();
+    commands_.tend(node_, std::llround(number(node_ + ".received", 0.0)));
+    if (const double held = which_.empty() ? -1.0 : number(which_, -1.0); held >= 0.0)
+        held_last_ = static_cast<int>(held);
     look_for_changes();
     follow_plan();
-    if (study_.valid() && study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    if (study_.is_ready()) {
         has_numbers_ = studied_ == Study::gaps || studied_ == Study::healthy;
         try {
-            found_ = study_.get();
+            found_ = study_.take();
         } catch (const std::exception& error) {
             found_ = error.what();
             has_numbers_ = false;
@@ -229,12 +227,7 @@ fs::path CaseRun::folder_of_results() const {
     return folder.empty() ? fs::current_path(none) : folder;
 }
 
-bool CaseRun::can_press(const std::string& input) const {
-    if (changes_document()) return input != "settle";
-    return buttons_.contains(input) && bench_.status()->state != RunStatus::State::over;
-}
-
-void CaseRun::give(const plan::PlanCommand& command) {
+void CaseRun::change_document(const plan::PlanCommand& command) {
     using Outcome = plan::PlanHistory::Outcome;
     try {
         // Kept from command to command: it can bring dropped alternatives back.
@@ -248,30 +241,17 @@ void CaseRun::give(const plan::PlanCommand& command) {
     }
 }
 
-void CaseRun::press(const std::string& input, int fragment, int other) {
-    if (changes_document()) {
-        if (input == "undo") return give(plan::UndoStep{});
-        if (input == "redo") return give(plan::RedoStep{});
-        if (input == "show") return give(plan::ShowFragments{});
-        if (fragment < 0) return bench_.tell("choose a fragment first, by the list of the scene", true);
-        if (input == "join") return give(plan::JoinFragments{fragment, other});
-        if (input == "split") return give(plan::SplitFragment{fragment});
-        if (input == "hide") return give(plan::HideFragment{fragment});
-        const bool is_locked = plan::state_of(document_->plan()).arrangement.is_locked(fragment);
-        return give(plan::LockFragment{fragment, !is_locked});
-    }
-    const auto button = buttons_.find(input);
-    if (button == buttons_.end()) return;
-    if (input == "undo" || input == "redo" || input == "show") return commands_.add({{button->second, {}, {}}});
-    commands_.add(
-        {{node_, "choose", std::to_string(fragment)}, {node_, "with", std::to_string(other)}, {button->second, {}, {}}},
-        LiveCommands::Kind::chooses);
-    // A press from elsewhere means the fragment that was held last.
-    commands_.add({{node_, "choose", "-1"}, {node_, "with", "-1"}}, LiveCommands::Kind::tidies);
+void CaseRun::give(const plan::PlanCommand& command) {
+    if (changes_document()) change_document(command);
+    else if (is_live()) commands_.add(command);
+}
+
+void CaseRun::toggle_lock(int fragment) {
+    if (plan_) give(plan::LockFragment{fragment, !plan::state_of(*plan_).arrangement.is_locked(fragment)});
 }
 
 void CaseRun::join(const std::vector<int>& fragments) {
-    for (std::size_t i = 1; i < fragments.size(); ++i) press("join", fragments.front(), fragments[i]);
+    for (std::size_t i = 1; i < fragments.size(); ++i) give(plan::JoinFragments{fragments.front(), fragments[i]});
 }
 
 bool CaseRun::is_live() const { return is_there() && bench_.status()->state != RunStatus::State::over; }
@@ -279,21 +259,6 @@ bool CaseRun::is_live() const { return is_there() && bench_.status()->state != R
 bool CaseRun::is_settled() const {
     if (bench_.status()->state == RunStatus::State::over) return true;
     return !commands_.is_under_way() && Clock::now() - unsettled_ > published_within;
-}
-
-// Only a change counts.
-void CaseRun::go_to_alternative(int place) {
-    if (changes_document()) return give(plan::GoToAlternative{place});
-    commands_.add({{node_, "alternative", "-1"}});
-    commands_.add({{node_, "alternative", std::to_string(place)}});
-}
-
-void CaseRun::drop_alternative(int place) {
-    if (changes_document())
-        return give(place < 0 ? plan::PlanCommand(plan::RestoreAlternative{})
-                              : plan::PlanCommand(plan::DropAlternative{place}));
-    commands_.add({{node_, "drop", "-1"}});
-    commands_.add({{node_, "drop", std::to_string(place)}});
 }
 
 std::optional<std::size_t> CaseRun::hand_button(const std::string& what) const {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan that a running patch changes, or the opened plan while none runs: its steps, the buttons that are wired to its
-// case_scene node, the fit of the held fragment, and studies of it. No user interface.
+// The plan that a running patch changes, or the opened plan while none runs: its steps, the commands that change it, the
+// fit of the held fragment, and studies of it. No user interface.
 #pragma once
 
 #include "assets/plan/plan_history.hpp"
 #include "engine/observe/observer.hpp"
+#include "tools/analysis/beside.hpp"
 #include "tools/window/document/live_commands.hpp"
 #include "tools/window/document/plan_document.hpp"
 #include "tools/window/document/workbench.hpp"
 
 #include <chrono>
 #include <filesystem>
-#include <future>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,6 +29,8 @@ struct StepLine {
 std::vector<StepLine> step_lines(const plan::CasePlan& plan);
 
 class CaseRun {
+    using Clock = std::chrono::steady_clock;
+
 public:
     explicit CaseRun(Workbench& bench) : bench_(bench), commands_(bench) {}
     ~CaseRun();
@@ -46,6 +48,7 @@ public:
 
     /// That of the run as it is now, or the opened one while none runs; null: neither. With absolute paths.
     const plan::CasePlan* plan() const { return plan_.get(); }
+    const std::shared_ptr<const plan::CasePlan>& newest() const { return plan_; }
     /// Increases with every version of `plan`; 0: none.
     std::int64_t version() const { return version_; }
     /// The output of the patch that has the fragments, "case.scene".
@@ -58,14 +61,17 @@ public:
     std::filesystem::path folder_of_results() const;
     const std::vector<StepLine>& steps() const { return steps_; }
 
-    /// Presses the button node that is wired to an input of the plan: "undo", "redo", "join", "split", "lock", "hide",
-    /// "show". `fragment`, `other`: places that it means; −1: the fragment held last, and its partner. While no run
-    /// changes the opened plan, it is changed at once.
-    void press(const std::string& input, int fragment = -1, int other = -1);
-    /// A button node is wired to that input, and the patch runs; or an opened plan is changed without one.
-    bool can_press(const std::string& input) const;
+    /// Applies a command to the plan: in the run, after those that were given before; or to the opened plan at once while
+    /// no run changes it. Why one is not done is in the messages.
+    void give(const plan::PlanCommand& command);
+    /// There is a plan that commands change.
+    bool can_give() const { return is_live() || changes_document(); }
+    /// Locks a fragment, or unlocks it.
+    void toggle_lock(int fragment);
     /// Puts fragments into one group, one after another.
     void join(const std::vector<int>& fragments);
+    /// The fragment that a hand holds in the run, or has held last; -1: none.
+    int held_last() const { return held_last_; }
     /// The patch runs.
     bool is_live() const;
     /// No run changes the opened plan: commands do so at once.
@@ -80,10 +86,6 @@ public:
     /// For a change with which the run is to begin again. False: not now; the reason is in the messages. In a pause they
     /// say that it waits.
     bool may_begin_again();
-    /// Goes to an alternative of the plan, by its place; their number: begins another one at the current state.
-    void go_to_alternative(int place);
-    /// Drops an alternative that is not the current one; -2: brings the last one back.
-    void drop_alternative(int place);
     /// The button of the hand, 0 to 3, that grasps, asks for a fit ("snap") or settles; none: the hand does not.
     std::optional<std::size_t> hand_button(const std::string& what) const;
 
@@ -95,20 +97,24 @@ public:
     };
     std::optional<Fit> fit() const;
 
-    /// A study of the plan, on a thread of its own; one at a time.
+    /// A study of the plan, beside the window; one at a time.
     enum class Study { gaps, healthy, report, files };
     void begin(Study study);
-    bool is_busy() const { return study_.valid(); }
+    bool is_busy() const { return study_.is_busy(); }
+    /// How long the study takes so far, s.
+    double busy_s() const { return std::chrono::duration<double>(Clock::now() - study_begun_).count(); }
+    /// Ends the study, before it has written anything. An export of many files is not ended.
+    bool can_cancel_study() const { return studied_ != Study::files; }
+    void cancel_study();
     /// What the last study said; numbers go with the state of the plan of which they are.
     const std::string& found() const { return found_; }
 
 private:
-    using Clock = std::chrono::steady_clock;
     void follow_patch();
     void watch(const std::shared_ptr<observe::Observer>& observer);
     void look_for_changes();
     void follow_plan();
-    void give(const plan::PlanCommand& command);
+    void change_document(const plan::PlanCommand& command);
     double number(const std::string& port, double otherwise) const;
     bool flag(const std::string& port) const;
 
@@ -117,11 +123,11 @@ private:
     std::int64_t plan_version_ = -1;
     std::string node_, matcher_;
     std::string file_name_, asset_;
-    std::map<std::string, std::string> buttons_;  // node, by input
     std::map<std::string, std::size_t> hand_buttons_;
     std::vector<std::string> watched_;
     LiveCommands commands_;
     std::string holding_, which_;  // ports; of the held fragment
+    int held_last_ = -1;
     double steps_done_ = -1.0;
     Clock::time_point stepped_{};
     std::size_t steps_at_start_ = 0;
@@ -134,7 +140,8 @@ private:
     std::shared_ptr<const plan::CasePlan> changed_of_;  // ... if it is still this version
     std::int64_t version_ = 0;
     std::vector<StepLine> steps_;
-    std::future<std::string> study_;
+    analysis::Beside<std::string> study_;
+    Clock::time_point study_begun_{};
     Study studied_ = Study::gaps;
     std::int64_t study_of_ = 0;  // version of the plan
     std::string found_;

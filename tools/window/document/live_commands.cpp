@@ -1,26 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/document/live_commands.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <utility>
 
 namespace tactus::window {
 
 namespace {
 
-// A button is pressed for 20 ms of the run, and what it presses must see it released before the next press.
-constexpr double between_s = 0.05;
+// In the order of PlanCommandNumbers. The kind comes first: a node that an edit of the patch replaces while a command is
+// on its way has none, and does nothing.
+struct PortNumber {
+    const char *name, *unit;
+};
+constexpr std::array<PortNumber, plan::plan_command_numbers> port{{{"command", ""},
+                                                                   {"command_first", ""},
+                                                                   {"command_second", ""},
+                                                                   {"command_switch", ""},
+                                                                   {"command_x", " m"},
+                                                                   {"command_y", " m"},
+                                                                   {"command_z", " m"},
+                                                                   {"command_qw", ""},
+                                                                   {"command_qx", ""},
+                                                                   {"command_qy", ""},
+                                                                   {"command_qz", ""},
+                                                                   {"command_score", ""},
+                                                                   {"command_margin", ""},
+                                                                   {"command_rms", " m"},
+                                                                   {"command_gap", " m"},
+                                                                   {"command_penetration", " m"},
+                                                                   {"command_overlap", " m^2"}}};
+// A command that the run has not confirmed after this time was lost with a node that was replaced. It is sent again under
+// its number, and done at most once.
+constexpr double again_after_s = 1.0;
 
 }  // namespace
-
-void LiveCommands::add(std::vector<Command> together, Kind kind) {
-    if (kind == Kind::chooses && !waiting_.empty() && waiting_.back().kind == Kind::tidies) waiting_.pop_back();
-    waiting_.push_back({std::move(together), kind});
-}
 
 void LiveCommands::clear() {
     waiting_.clear();
     is_sent_ = false;
-    acts_s_ = -1.0;
+    number_ = 0;
 }
 
 bool LiveCommands::is_paused() const {
@@ -28,34 +50,32 @@ bool LiveCommands::is_paused() const {
     return state == RunStatus::State::fades || state == RunStatus::State::stands;
 }
 
-bool LiveCommands::is_under_way() const {
-    return !waiting_.empty() || is_sent_ || bench_.status()->time < acts_s_ + between_s;
-}
-
 void LiveCommands::tell_pause() {
     if (is_paused() && !std::exchange(has_told_, true))
         bench_.tell("the run is paused: the change comes when it goes on");
 }
 
-void LiveCommands::tend() {
+void LiveCommands::send(const std::string& node) {
+    const plan::PlanCommandNumbers numbers = plan::numbers_of(waiting_.front());
+    for (std::size_t n = 0; n < numbers.size(); ++n)
+        bench_.turn(node, port[n].name, fmt::format("{:.17g}{}", numbers[n], port[n].unit));
+    bench_.turn(node, "command_number", fmt::format("{}", number_));
+    sent_s_ = bench_.status()->time;
+}
+
+void LiveCommands::tend(const std::string& node, std::int64_t received) {
     const std::shared_ptr<const RunStatus> status = bench_.status();
     if (status->state == RunStatus::State::over) return clear();
-    if (is_sent_ && status->requests >= sent_) {
+    if (is_sent_ && received >= number_) {
+        waiting_.pop_front();
         is_sent_ = false;
-        acts_s_ = status->changed_s;
     }
     if (!is_paused()) has_told_ = false;
     else if (!waiting_.empty()) tell_pause();
-    // Two changes of one parameter at the same time of the run are one, and its time may go slowly or stand.
-    if (waiting_.empty() || is_sent_ || status->state != RunStatus::State::runs || status->time < acts_s_ + between_s)
-        return;
-    for (const Command& command : waiting_.front().commands) {
-        if (command.param.empty()) bench_.press(command.node);
-        else bench_.turn(command.node, command.param, command.value);
-    }
-    waiting_.pop_front();
-    sent_ = bench_.requests();
-    is_sent_ = true;
+    if (waiting_.empty() || status->state != RunStatus::State::runs) return;
+    if (is_sent_ && status->time < sent_s_ + again_after_s) return;
+    if (!std::exchange(is_sent_, true)) number_ = std::max(number_, received) + 1;
+    send(node);
 }
 
 }  // namespace tactus::window

@@ -1,50 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changes of parameters and presses of buttons that a run gets one after another, so that each takes effect. No user
-// interface.
+// Commands that a run applies to its plan, one after another. No user interface.
 #pragma once
 
+#include "assets/plan/plan_command.hpp"
 #include "tools/window/document/workbench.hpp"
 
-#include <chrono>
+#include <cstdint>
 #include <deque>
 #include <string>
-#include <vector>
 
 namespace tactus::window {
 
+/// The sender of the command port of a case_scene node. The run confirms each command before the next one is sent, so
+/// that none is lost in a pause, by an edit or on a slow machine.
 class LiveCommands {
 public:
-    struct Command {
-        std::string node;  ///< a button, or of `param`
-        std::string param, value;  ///< empty: the button is pressed
-    };
-    /// chooses: says for itself what it means; tidies: sets back what one that chooses has set.
-    enum class Kind { acts, chooses, tidies };
-
     explicit LiveCommands(Workbench& bench) : bench_(bench) {}
 
-    /// Given to the run at once, after those before have taken effect. One that tidies makes way for one that chooses.
-    void add(std::vector<Command> together, Kind kind = Kind::acts);
+    void add(const plan::PlanCommand& command) { waiting_.push_back(command); }
     void clear();
-    /// Once per picture: sends what may be sent. In a pause commands wait, and the messages say so.
-    void tend();
-    /// Something waits, or was sent and may not have taken effect yet.
-    bool is_under_way() const;
+    /// Once per picture: sends what may be sent. In a pause commands wait, and the messages say so. `node`: of the plan;
+    /// `received`: its output, the number of the last command that it has done or refused.
+    void tend(const std::string& node, std::int64_t received);
+    /// A command waits, or is not confirmed.
+    bool is_under_way() const { return !waiting_.empty(); }
     /// The run stands still or is about to.
     bool is_paused() const;
     /// Says that a change waits for the end of the pause, once per pause.
     void tell_pause();
 
 private:
-    struct Batch {
-        std::vector<Command> commands;
-        Kind kind = Kind::acts;
-    };
+    void send(const std::string& node);
+
     Workbench& bench_;
-    std::deque<Batch> waiting_;
-    std::int64_t sent_ = 0;  ///< Workbench::requests after what was sent last
-    bool is_sent_ = false;  ///< the run has not carried it out
-    double acts_s_ = -1.0;  ///< logical: when it takes effect
+    std::deque<plan::PlanCommand> waiting_;  // the first one may be sent
+    bool is_sent_ = false;
+    std::int64_t number_ = 0;  // of the command that was sent last
+    double sent_s_ = 0.0;  // logical
     bool has_told_ = false;
 };
 

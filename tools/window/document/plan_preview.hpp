@@ -29,6 +29,10 @@ public:
     const std::shared_ptr<observe::Observer>& observer() const { return observer_; }
     std::size_t loaded() const { return shown_; }
     std::size_t count() const { return count_; }
+    /// The bodies of all fragments, in the order of the plan; empty: they are still being loaded.
+    std::vector<std::shared_ptr<const nodes::BodyParts>> parts() const {
+        return parts_.size() == count_ ? parts_ : std::vector<std::shared_ptr<const nodes::BodyParts>>();
+    }
     bool is_loading() const { return loading_.is_busy(); }
     /// Why a bone could not be loaded; empty: none.
     const std::string& problem() const { return problem_; }

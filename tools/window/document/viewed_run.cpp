@@ -95,7 +95,6 @@ void ViewedRun::tend(RunSession& session) {
         } catch (const Error& error) {
             say(error.what());
         }
-        ++done_;
     }
     constexpr int looks = 5;  // every 100 ms, a new version of the plan at once
     if (tends_++ % looks == 0 || plan_of(session.engine()) != status()->plan) look_at(session);
@@ -109,8 +108,6 @@ void ViewedRun::look_at(RunSession& session) {
     status.time = engine.progress_seconds();
     status.folder = session.folder();
     status.edits = engine.edits();
-    status.requests = done_;
-    status.changed_s = changed_s_;
     status.is_recording = engine.is_recording();
     status.plan = plan_of(engine);
     for (const auto& notices = engine.host().notices; told_notices_ < notices.size(); ++told_notices_)
@@ -154,17 +151,11 @@ void ViewedRun::say(const std::string& text) {
 void ViewedRun::ask(std::function<void(RunSession&)> what) {
     const std::lock_guard lock(lock_);
     if (over_) return;
-    ++requests_;
     asked_.push_back(std::move(what));
 }
 
-std::int64_t ViewedRun::requests() const {
-    const std::lock_guard lock(lock_);
-    return requests_;
-}
-
 void ViewedRun::set(const std::string& node, const std::string& param, const std::string& value) {
-    ask([=, this](RunSession& session) { changed_s_ = seconds(session.engine().set(node, param, value)); });
+    ask([=](RunSession& session) { session.engine().set(node, param, value); });
 }
 
 void ViewedRun::edit(const std::string& text) {
@@ -193,9 +184,9 @@ void ViewedRun::recover(const std::string& node) {
 }
 
 void ViewedRun::press(const std::string& node) {
-    ask([this, node](RunSession& session) {
+    ask([node](RunSession& session) {
         if (!session.control()) throw Error("this run does not accept buttons (--no-edits)");
-        changed_s_ = seconds(session.control()->press_button(node));
+        session.control()->press_button(node);
     });
 }
 

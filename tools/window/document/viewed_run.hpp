@@ -58,8 +58,6 @@ struct RunStatus {
     std::vector<run::HandForces> forces;
     std::vector<run::FaultOnRecord> faults;
     std::int64_t edits = 0;
-    std::int64_t requests = 0;  ///< carried out, see ViewedRun::requests
-    double changed_s = 0.0;  ///< logical, s: when the last change of a parameter, or press of a button, takes effect
     bool is_recording = false;
     std::filesystem::path folder;  ///< of its results; empty while it loads
     std::shared_ptr<const plan::CasePlan> plan;  ///< newest version of the plan that it changes; null: there is none
@@ -81,8 +79,6 @@ public:
     bool file_was_saved() { return saved_.exchange(false); }
     bool is_over() const { return over_; }
 
-    /// What was asked of it so far, by the members below.
-    std::int64_t requests() const;
     void set(const std::string& node, const std::string& param, const std::string& value);
     void edit(const std::string& text);
     /// The patch was saved as another file, which is watched from now on.
@@ -117,8 +113,6 @@ private:
     std::vector<std::function<void(RunSession&)>> asked_;
     std::vector<std::string> messages_;
     std::shared_ptr<const RunStatus> status_ = std::make_shared<RunStatus>();
-    std::int64_t requests_ = 0, done_ = 0;
-    double changed_s_ = 0.0;
     int tends_ = 0;
     std::size_t told_notices_ = 0;
     run::ForceNews news_{choice_.edits ? run::LetReturn::by_set : run::LetReturn::by_button};

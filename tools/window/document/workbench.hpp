@@ -233,8 +233,6 @@ public:
     const std::filesystem::path& take() const { return last_take_; }
     ViewedRun* running() { return run_.get(); }
     std::shared_ptr<const RunStatus> status() const;
-    /// What was asked of the run so far; RunStatus::requests says how much of it is done.
-    std::int64_t requests() const { return run_ ? run_->requests() : 0; }
     std::shared_ptr<observe::Observer> observer() const { return observer_; }
     /// Increases with every new run.
     int runs() const { return runs_; }

@@ -2,6 +2,7 @@
 // Studies of the plan: gaps, distance from the healthy side, page, files for other programs.
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/analysis/plan/plan_export.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
@@ -10,6 +11,8 @@
 #include "tools/window/document/case_run.hpp"
 
 #include <fmt/format.h>
+
+#include <utility>
 
 namespace tactus::window {
 
@@ -76,12 +79,18 @@ std::string made(CaseRun::Study what, const plan::CasePlan& plan, const fs::path
 void CaseRun::begin(Study what) {
     if (is_busy()) return;
     if (!plan_) return bench_.tell("there is no plan yet", true);
-    found_ = "...";
+    found_.clear();
     has_numbers_ = false;
     studied_ = what;
     study_of_ = version_;
-    study_ = std::async(std::launch::async,
-                        [what, plan = plan_, folder = folder_of_results()] { return made(what, *plan, folder); });
+    study_begun_ = Clock::now();
+    study_.begin(analysis::Lane::studies, [what, plan = plan_, folder = folder_of_results()](std::stop_token stop) {
+        // An export of many files is made as a whole.
+        const StopScope scope(what == Study::files ? std::stop_token() : std::move(stop));
+        return made(what, *plan, folder);
+    });
 }
+
+void CaseRun::cancel_study() { study_.let_go(); }
 
 }  // namespace tactus::window

@@ -160,12 +160,12 @@ void PlanAlternatives::note_asked() {
 
 void PlanAlternatives::go_to(int place) {
     note_asked();
-    run_.go_to_alternative(place);
+    run_.give(plan::GoToAlternative{place});
 }
 
 void PlanAlternatives::drop(int place) {
     note_asked();
-    run_.drop_alternative(place);
+    run_.give(plan::DropAlternative{place});
 }
 
 void PlanAlternatives::list(const plan::CasePlan& plan) {
@@ -193,7 +193,7 @@ void PlanAlternatives::list(const plan::CasePlan& plan) {
             continue_line("drop");
             if (ImGui::SmallButton("drop")) drop(n);
             mark_spot("drop " + name);
-            if (ImGui::IsItemHovered()) show_tooltip("its steps stay in the file; 'undrop' brings it back");
+            if (ImGui::IsItemHovered()) show_tooltip("its steps stay in the file; 'restore' brings it back");
         }
         ImGui::PopID();
     }
@@ -207,8 +207,8 @@ void PlanAlternatives::draw() {
     mark_spot("new from here");
     if (ImGui::IsItemHovered()) show_tooltip("begins an alternative at the plan as it is now");
     ImGui::SameLine();
-    if (ImGui::Button("undrop")) run_.drop_alternative(-2);
-    mark_spot("undrop");
+    if (ImGui::Button("restore")) run_.give(plan::RestoreAlternative{});
+    mark_spot("restore alternative");
     if (ImGui::IsItemHovered()) show_tooltip("brings the alternative that was dropped last in this run back");
     list(plan);
     ImGui::EndDisabled();

@@ -4,10 +4,37 @@
 
 namespace tactus::window {
 
-void PlanPanel::on_chosen(const char* input) {
-    const std::vector<int> chosen = scene_.chosen_places();
-    if (chosen.empty()) case_.press(input);
-    for (const int place : chosen) case_.press(input, place);
+std::vector<int> PlanPanel::meant() const {
+    std::vector<int> chosen = scene_.chosen_places();
+    if (chosen.empty() && case_.held_last() >= 0) chosen.push_back(case_.held_last());
+    return chosen;
+}
+
+void PlanPanel::on_meant(const std::function<void(int)>& what) {
+    const std::vector<int> all = meant();
+    if (all.empty()) bench_.tell("choose a fragment first, in the scene or in its list", true);
+    for (const int place : all) what(place);
+}
+
+void PlanPanel::split() {
+    on_meant([this](int place) { case_.give(plan::SplitFragment{place}); });
+}
+
+void PlanPanel::lock() {
+    on_meant([this](int place) { case_.toggle_lock(place); });
+}
+
+void PlanPanel::hide() {
+    on_meant([this](int place) { case_.give(plan::HideFragment{place}); });
+}
+
+/// The chosen fragments, or the one held last and the partner of its fit.
+void PlanPanel::group() {
+    std::vector<int> all = scene_.chosen_places();
+    if (const auto fit = case_.fit(); all.empty() && fit && fit->partner >= 0 && fit->fragment >= 0)
+        all = {fit->fragment, fit->partner};
+    if (all.size() > 1) return case_.join(all);
+    bench_.tell("choose two fragments or more, by the list of the scene or by 'Choose' in the list of commands", true);
 }
 
 void PlanPanel::add_commands(std::vector<Command>& all) {
@@ -24,21 +51,21 @@ void PlanPanel::add_commands(std::vector<Command>& all) {
         if (const auto number = case_.hand_button(each.what); number && scene_.hand().is_there())
             add(each.name, each.about, nullptr,
                 [this, number = *number] { scene_.hand().hold(number, !scene_.hand().is_held(number)); });
-    const auto can = [this](const char* input) { return [this, input] { return case_.can_press(input); }; };
-    add("Group the chosen fragments", "join together", can("join"), [this] {
-        const std::vector<int> chosen = scene_.chosen_places();
-        if (chosen.size() > 1) case_.join(chosen);
-        else if (chosen.empty()) case_.press("join");
-        else
-            bench_.tell("choose two fragments or more, by the list of the scene or by 'Choose' in the list of commands",
-                        true);
-    });
-    add("Split the chosen fragments", "group apart", can("split"), [this] { on_chosen("split"); });
-    add("Lock or unlock the chosen fragments", "fix", can("lock"), [this] { on_chosen("lock"); });
-    add("Hide the chosen fragments in the plan", "remove", can("hide"), [this] { on_chosen("hide"); });
-    add("Show the fragments that the plan hides", "all", can("show"), [this] { case_.press("show"); });
-    add("Undo a step of the plan", "back", can("undo"), [this] { case_.press("undo"); });
-    add("Redo a step of the plan", "again", can("redo"), [this] { case_.press("redo"); });
+    const auto can = [this] { return case_.can_give(); };
+    const auto can_place = [this] { return this->can_place(); };
+    add("Snap the chosen fragment to where it fits", "match place fracture", can_place, [this] { snap(); });
+    add("Put the chosen fragment back to where the scan has it", "original", can_place, [this] { put_back(); });
+    add(
+        "Put the chosen fragment on the mirrored side", "healthy", [this] { return this->can_place() && has_mirror(); },
+        [this] { put_on_mirror(); });
+    add("Accept the place of the chosen fragment", "decision", can_place, [this] { accept(); });
+    add("Group the chosen fragments", "join together", can, [this] { group(); });
+    add("Split the chosen fragments", "group apart", can, [this] { split(); });
+    add("Lock or unlock the chosen fragments", "fix", can, [this] { lock(); });
+    add("Hide the chosen fragments in the plan", "remove", can, [this] { hide(); });
+    add("Show the fragments that the plan hides", "all", can, [this] { case_.give(plan::ShowFragments{}); });
+    add("Undo a step of the plan", "back", can, [this] { case_.give(plan::UndoStep{}); });
+    add("Redo a step of the plan", "again", can, [this] { case_.give(plan::RedoStep{}); });
     add(
         "Another name for the alternative", "rename",
         [this] { return case_.plan() && (case_.is_live() || case_.changes_document()); },

@@ -5,6 +5,7 @@
 #include "assets/plan/plan_files.hpp"
 #include "dsp/fit/fit.hpp"
 #include "tools/window/frame/tooltip.hpp"
+#include "tools/window/plan/plan_button.hpp"
 #include "tools/window/widgets/spots.hpp"
 #include "tools/window/widgets/theme.hpp"
 
@@ -14,23 +15,6 @@
 #include <utility>
 
 namespace tactus::window {
-
-namespace {
-
-/// On the same line if it fits. A button that cannot be pressed is dim.
-bool button(const char* label, bool can, const char* tip, bool is_first = false) {
-    const float end = ImGui::GetItemRectMax().x + 2.0f * ImGui::GetStyle().ItemSpacing.x +
-                      ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x;
-    if (!is_first && end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
-    ImGui::BeginDisabled(!can);
-    const bool pressed = ImGui::Button(label);
-    ImGui::EndDisabled();
-    mark_spot(label);
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) show_tooltip(tip);
-    return pressed;
-}
-
-}  // namespace
 
 /// Grasp, snap and settle are buttons of the hand; each stays held until it is pressed again.
 void PlanPanel::hand_buttons() {
@@ -48,7 +32,7 @@ void PlanPanel::hand_buttons() {
         if (!number) continue;
         const bool is_held = scene_.hand().is_held(*number);
         if (is_held) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
-        const bool pressed = button(named.label, true, named.tip, is_first);
+        const bool pressed = plan_button(named.label, true, named.tip, is_first);
         if (is_held) ImGui::PopStyleColor();
         if (is_held) mark_spot(std::string(named.label) + " is held");
         if (pressed) scene_.hand().hold(*number, !is_held);
@@ -81,34 +65,38 @@ void PlanPanel::fit_line() const {
 
 /// On the fragments that are chosen in the scene, or the one held last.
 void PlanPanel::fragment_buttons() {
-    const std::vector<int> chosen = scene_.chosen_places();
-    const bool is_some = !chosen.empty();
-    if (button("group", case_.can_press("join") && chosen.size() != 1,
-               "the chosen fragments move together from now on (Ctrl and click chooses several); with none chosen: the "
-               "one held last and its partner",
-               true)) {
-        if (is_some) case_.join(chosen);
-        else case_.press("join");
-    }
-    const auto each = [&](const char* label, const char* input, const char* tip) {
-        if (button(label, case_.can_press(input), tip)) on_chosen(input);
-    };
-    each("split", "split", "the chosen fragments, or the one held last, leave their groups");
-    each("lock", "lock", "lock or unlock the chosen fragments, or the one held last");
-    each("hide in plan", "hide", "out of pictures and fits: a step of the plan");
-    if (button("show hidden", case_.can_press("show"), "all that the plan hides")) case_.press("show");
+    const bool can = case_.can_give();
+    if (plan_button(
+            "group", can && scene_.chosen_places().size() != 1,
+            "the chosen fragments move together from now on (Ctrl and click chooses several); with none chosen: the "
+            "one held last and its partner",
+            true))
+        group();
+    if (plan_button("split", can, "the chosen fragments, or the one held last, leave their groups")) split();
+    if (plan_button("lock", can, "lock or unlock the chosen fragments, or the one held last")) lock();
+    if (plan_button("hide in plan", can, "out of pictures and fits: a step of the plan")) hide();
+    if (plan_button("show hidden", can, "all that the plan hides")) case_.give(plan::ShowFragments{});
 }
 
 void PlanPanel::studies() {
     const bool can = case_.plan() && !case_.is_busy();
-    if (button("gaps", can, "between the fragments of the plan as it is now", true)) case_.begin(CaseRun::Study::gaps);
-    if (button("mirror", can, "distance of each fragment from the mirrored healthy side"))
+    if (plan_button("gaps", can, "between the fragments of the plan as it is now", true))
+        case_.begin(CaseRun::Study::gaps);
+    if (plan_button("mirror", can, "distance of each fragment from the mirrored healthy side"))
         case_.begin(CaseRun::Study::healthy);
-    if (button("report", can, "a page with pictures, gaps, fits and steps, in the run's folder"))
+    if (plan_button("report", can, "a page with pictures, gaps, fits and steps, in the run's folder"))
         case_.begin(CaseRun::Study::report);
-    if (button("export", can, "placed meshes, transforms and landmarks for 3D Slicer, in the run's folder"))
+    if (plan_button("export", can, "placed meshes, transforms and landmarks for 3D Slicer, in the run's folder"))
         case_.begin(CaseRun::Study::files);
-    if (!case_.found().empty()) ImGui::TextWrapped("%s", case_.found().c_str());
+    if (case_.is_busy()) {
+        ImGui::TextDisabled("measuring, %.0f s", case_.busy_s());
+        mark_spot("study is made");
+        if (case_.can_cancel_study()) {
+            ImGui::SameLine();
+            if (ImGui::SmallButton("cancel##study")) case_.cancel_study();
+            mark_spot("cancel study");
+        }
+    } else if (!case_.found().empty()) ImGui::TextWrapped("%s", case_.found().c_str());
 }
 
 /// Colours of the fragments in the scene.
@@ -117,7 +105,7 @@ void PlanPanel::maps() {
     const auto choose = [&](const char* label, Kind kind, const char* tip, bool is_first) {
         const bool is_on = map_.shown() == kind;
         if (is_on) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
-        const bool pressed = button(label, case_.plan() != nullptr, tip, is_first);
+        const bool pressed = plan_button(label, case_.plan() != nullptr, tip, is_first);
         if (is_on) ImGui::PopStyleColor();
         if (pressed) map_.show(is_on ? std::nullopt : std::optional(kind));
     };
@@ -145,9 +133,9 @@ void PlanPanel::maps() {
 
 /// Above all that grows: a hand reaches them without scrolling.
 void PlanPanel::history_buttons() {
-    if (button("undo step", case_.can_press("undo"), "of the plan; let the fragment go first", true))
-        case_.press("undo");
-    if (button("redo step", case_.can_press("redo"), "of the plan")) case_.press("redo");
+    if (plan_button("undo step", case_.can_give(), "of the plan; a held fragment is released first", true))
+        case_.give(plan::UndoStep{});
+    if (plan_button("redo step", case_.can_give(), "of the plan")) case_.give(plan::RedoStep{});
 }
 
 void PlanPanel::step_list() {
@@ -214,6 +202,7 @@ void PlanPanel::draw(const Fonts&) {
     hand_buttons();
     history_buttons();
     fit_line();
+    placing_buttons();
     fragment_buttons();
     studies();
     maps();

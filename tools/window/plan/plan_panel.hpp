@@ -2,13 +2,23 @@
 // The steps of a plan that the patch changes, with undo and redo, and what can be done to the held or chosen fragments.
 #pragma once
 
+#include "tools/analysis/beside.hpp"
 #include "tools/window/document/case_run.hpp"
+#include "tools/window/document/fragment_fits.hpp"
+#include "tools/window/document/fragment_mover.hpp"
 #include "tools/window/frame/commands.hpp"
 #include "tools/window/plan/flap_panel.hpp"
 #include "tools/window/plan/plan_alternatives.hpp"
 #include "tools/window/plan/plan_map.hpp"
 #include "tools/window/scene/scene_panel.hpp"
 #include "tools/window/widgets/painter.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace tactus::window {
 
@@ -22,15 +32,21 @@ public:
           alternatives_(bench, case_, scene),
           flap_(bench, case_, scene) {
         bench_.is_settled = [this] { return may_change_hand(); };
+        scene_.use_mover(&mover_);
     }
-    ~PlanPanel() { bench_.is_settled = nullptr; }
+    ~PlanPanel() {
+        bench_.is_settled = nullptr;
+        scene_.use_mover(nullptr);
+    }
     PlanPanel(const PlanPanel&) = delete;
     PlanPanel& operator=(const PlanPanel&) = delete;
 
     CaseRun& case_run() { return case_; }
+    FragmentMover& mover() { return mover_; }
     /// Once per picture, also while it is not drawn: the scene keeps the colours of a map.
     void tend(const std::shared_ptr<observe::Observer>& observer) {
         case_.tend(observer);
+        tend_placing();
         map_.tend();
         alternatives_.tend();
         flap_.tend();
@@ -44,17 +60,49 @@ public:
     void begin_again();
 
 private:
-    void on_chosen(const char* input);
+    /// The fragments that a command means: the chosen ones, or the one that a hand holds or has held last.
+    std::vector<int> meant() const;
+    void on_meant(const std::function<void(int)>& what);
+    void group();
+    void split();
+    void lock();
+    void hide();
     void hand_buttons();
     void history_buttons();
     void fit_line() const;
     void fragment_buttons();
+    /// Buttons that put the chosen fragment to a place, and the fits to choose from.
+    void placing_buttons();
+    void candidates();
+    void tend_placing();
+    void snap();
+    void put_back();
+    void put_on_mirror();
+    void accept();
+    bool can_place() const;
+    bool has_mirror();
+    void show_candidate();
+    void end_candidates();
     void studies();
     void maps();
     void step_list();
 
     Workbench& bench_;
     CaseRun case_;
+    FragmentMover mover_{bench_, case_};
+    FragmentFits fits_;
+    std::optional<FragmentFits::Found> found_;  ///< fits to choose from
+    std::size_t candidate_ = 0;
+    std::string placed_;  ///< what became of the last request
+    /// A command that is computed beside the window, and words about it.
+    struct Placing {
+        plan::PlanCommand command;
+        std::string words;
+    };
+    analysis::Beside<Placing> placing_;
+    std::shared_ptr<const plan::CasePlan> placing_of_;  ///< the plan as it was then
+    std::int64_t mirror_version_ = -1;
+    bool has_mirror_ = false;
     ScenePanel& scene_;
     PlanMap map_;
     PlanAlternatives alternatives_;

@@ -178,6 +178,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             if (!model_) {
                 model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
                 model_->spread_work();
+                moves_shown_ = -1;
                 model_->use_look(std::exchange(look_, {}));
             } else model_->follow(std::move(outline));
             model_->use_map(map_, map_range_);
@@ -199,7 +200,8 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             "space", vec(size),
             ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
         mark_spot("scene picture");
-        steer(static_cast<int>(size.x), static_cast<int>(size.y));
+        steer(corner, static_cast<int>(size.x), static_cast<int>(size.y));
+        follow_mover();
         service_screens();
         render(width, height);
         const bool is_clicked = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
@@ -228,6 +230,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
                            sight_.display_file()->screens[i].name);
         }
         draw_cursor(paint, corner, 1.0 / dense);
+        draw_handles(paint, corner, 1.0 / dense);
         draw_labels(paint, corner, 1.0 / dense);
         for (const render::Measurement& kept : measurements_)
             draw_measured(kept, tone::dim, paint, corner, 1.0 / dense);

@@ -8,6 +8,7 @@
 #include "tools/render/markups.hpp"
 #include "tools/render/scene_model.hpp"
 #include "tools/render/sight.hpp"
+#include "tools/window/document/fragment_mover.hpp"
 #include "tools/window/document/workbench.hpp"
 #include "tools/window/frame/commands.hpp"
 #include "tools/window/hand/pulled_hands.hpp"
@@ -42,6 +43,9 @@ public:
 
     /// Replaces `draw` while the patch has no scene: closes the windows and releases the run.
     void rest();
+
+    /// Lets the mouse drag the chosen fragments of a plan; it must outlive the panel. Null: it does not.
+    void use_mover(FragmentMover* mover) { mover_ = mover; }
 
     /// The bones and bodies as a list.
     void draw_tree();
@@ -108,8 +112,14 @@ public:
 private:
     void tools();
     void sight_tools();
-    void steer(int width, int height);
+    void steer(Point corner, int width, int height);
     void steer_by_keys(bool is_pointed_at);
+    /// Drags a chosen fragment. True: the mouse is the fragment's.
+    bool steer_fragment(Point corner, int height);
+    void take_fragment(Point corner);
+    void drag_fragment(int height);
+    void follow_mover();
+    void draw_handles(const Painter& paint, Point corner, double pixel);
     void render(int width, int height);
     void draw_step(display::Picture& picture);
     void service_screens();
@@ -152,6 +162,21 @@ private:
     MotionGrain grain_;
     SceneHand hand_;
     PulledHands pulled_;
+    FragmentMover* mover_ = nullptr;
+    std::int64_t moves_shown_ = -1;  ///< version of the mover
+    enum class Grip { none, plane, shift, turn };
+    /// A line of the handles on the screen, which the mouse can drag.
+    struct Handle {
+        Grip grip = Grip::none;
+        int axis = 0;
+        std::vector<Point> line;
+    };
+    std::vector<Handle> handles_;  ///< as they were drawn last
+    Point handles_at_;
+    Grip grip_ = Grip::none;  ///< of the fragment that is dragged
+    int grip_axis_ = 0;
+    Vec3 grip_at_{0.0};
+    Point dragged_;  ///< since the press, pixels: what the fragment has followed
     enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports
     std::int64_t plan_version_ = -1, judged_version_ = -1;

@@ -7,10 +7,11 @@
 
 namespace tactus::window {
 
-void ScenePanel::steer(int width, int height) {
+void ScenePanel::steer(Point corner, int width, int height) {
     const bool is_hand = hand_.steer(camera, height);
     steer_by_keys(ImGui::IsItemHovered() || ImGui::IsItemActive());
-    if (is_hand || (!ImGui::IsItemHovered() && !ImGui::IsItemActive())) return;
+    const bool is_fragment = !is_hand && steer_fragment(corner, height);
+    if (is_hand || is_fragment || (!ImGui::IsItemHovered() && !ImGui::IsItemActive())) return;
     const ImGuiIO& io = ImGui::GetIO();
     const Point by = point(io.MouseDelta);
     const display::OrbitCamera before = camera;

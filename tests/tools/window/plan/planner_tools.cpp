@@ -87,7 +87,7 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
         walk.keep("compared");
         press("drop " + other);
         CHECK(comes([&] { return plan().alternatives.size() == 1; }));
-        press("undrop");
+        press("restore alternative");
         CHECK(comes([&] { return plan().alternatives.size() == 2; }));
 
         // A section: the fourth line of the list of planes lies across the view from above. The legend
