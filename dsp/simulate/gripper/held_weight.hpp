@@ -22,6 +22,8 @@ struct WeightSettings {
 
 /// Point mass. Two fingers that press with N each hold at most 2 μ N (Coulomb friction); beyond that it slides.
 struct HeldWeight {
+    static constexpr double table_friction = 0.5;
+
     Vec3 position{0.0}, velocity{0.0};
     Vec3 grip{0.0};  ///< grip point of the object, in the hand's axes
     bool held = false, slides = false;
@@ -48,9 +50,15 @@ struct HeldWeight {
         if (depth > 0.0) {
             constexpr double sink = 0.5e-3;  // m: penetration of the table under the weight's own load
             const double k = s.mass * s.gravity / sink;
-            force.z += std::max(0.0, k * depth - 1.4 * std::sqrt(k * s.mass) * velocity.z);
-            force.x -= velocity.x * s.mass / dt * 0.5;  // the table stops sliding
-            force.y -= velocity.y * s.mass / dt * 0.5;
+            // The damper comes in with the depth, and friction with the load: a weight that touches the table is not stopped in
+            // one step, which the grip would pass on.
+            const double load =
+                std::max(0.0, k * depth - 1.4 * std::sqrt(k * s.mass) * velocity.z * std::min(1.0, depth / sink));
+            force.z += load;
+            const double speed = std::hypot(velocity.x, velocity.y);
+            const double slowed = std::min(0.5 * s.mass / dt, speed > 0.0 ? table_friction * load / speed : 0.0);
+            force.x -= velocity.x * slowed;
+            force.y -= velocity.y * slowed;
         }
         velocity += force * (dt / s.mass);
         position += velocity * dt;
