@@ -10,6 +10,7 @@
 #include "dsp/coupling/scene.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
 #include "dsp/volume/bricks.hpp"
+#include "graph/node/task_asset.hpp"
 #include "nodes/catalogue.hpp"
 #include "tests/nodes/contact/closed_paths.hpp"
 #include "tests/nodes/plan/flap_case.hpp"
@@ -33,6 +34,8 @@
 namespace tactus::test {
 
 namespace {
+
+const Quat blade_down = rotation_by({-0.5 * std::numbers::pi, 0.0, 0.0});
 
 // In one tick: N, N·m, and a share of the largest force, a third of what a hand can tell apart (L. A. Jones, 1989: 7 %).
 constexpr double jump_force = 0.2, jump_torque = 0.01, jump_share = 0.02;
@@ -89,6 +92,7 @@ struct Factor {
     std::vector<std::string> words;  // of a choice or a flag
     double low = 0.0, high = 0.0;  // of a parameter
     bool is_whole = false;
+    bool is_in_corners = true;
 
     bool is_number() const { return words.empty(); }
     std::size_t levels() const { return is_number() ? 2 : words.size(); }
@@ -109,6 +113,11 @@ struct Declared final : MemberVisitor {
         void* const node = type.create();
         type.visit(node, *this);
         type.destroy(node);
+        // Behind all others, whose random numbers stay the same.
+        if (guide_stiffness) {
+            factors.push_back({"guide", {"none", "slot"}, 0.0, 0.0, false, false});
+            factors.push_back(*guide_stiffness);
+        }
     }
     void input(std::string_view name, Input& port) override {
         inputs.push_back({std::string(name), port.unit, port.type, port.is_optional, port.is_of_world});
@@ -118,9 +127,11 @@ struct Declared final : MemberVisitor {
     }
     void param(std::string_view name, Param& p) override {
         // The scene decides which body is held. A bound on the computing time of a tick cuts an evaluation off, and the
-        // force with it: what it does to a force is not judged. A saw is swept without a guide.
+        // force with it: what it does to a force is not judged.
         if (name == "held") has_held = true;
-        else if (!p.is_trigger && name != "budget" && name != "iterations" && name != "guide_stiffness")
+        else if (name == "guide_stiffness") {
+            if (is_tool()) guide_stiffness = {"guide_stiffness", {}, p.min, p.max, false, false};
+        } else if (!p.is_trigger && name != "budget" && name != "iterations")
             factors.push_back({std::string(name), {}, p.min, p.max, p.is_discrete});
     }
     void choice(std::string_view name, Choice& c) override { factors.push_back({std::string(name), c.options, 0, 0}); }
@@ -132,6 +143,12 @@ struct Declared final : MemberVisitor {
     std::vector<Factor> factors;
     std::string force;
     bool has_held = false;
+
+private:
+    bool is_tool() const {
+        return std::ranges::any_of(inputs, [](const Port& port) { return port.name == "bone"; });
+    }
+    std::optional<Factor> guide_stiffness;
 };
 
 // The world around a node.
@@ -187,6 +204,39 @@ const volume::BoneEditor& swept_bone(bool is_thin) {
     return is_thin ? thin : block;
 }
 
+/// A guide on the bone with a slot for a blade of that kerf, whose teeth point down.
+std::shared_ptr<const training::Task> guide_for(double kerf) {
+    const double half = 0.5 * kerf + 0.15 * mm;
+    auto task = std::make_shared<training::Task>();
+    saw::GuideSlot slot;
+    slot.frame = {Vec3(0.0), blade_down};
+    slot.low = -15.0 * mm, slot.high = 15.0 * mm, slot.top = -10.5 * mm, slot.bottom = -0.5 * mm;
+    slot.wall = -half, slot.other_wall = half;
+    task->slots = {slot};
+    const contact::Box walls{Vec3(34.0, 14.0, 10.0) * mm};
+    auto body = std::make_shared<bone::Bone>();
+    volume::Grid& distance = body->distance;
+    distance = {{76, 36, 28}, Vec3(-19.0 * mm, -9.0 * mm, -1.5 * mm), Vec3(0.5 * mm), {}};
+    distance.values.resize(distance.count());
+    for (int k = 0; k < distance.size[2]; ++k)
+        for (int j = 0; j < distance.size[1]; ++j)
+            for (int i = 0; i < distance.size[0]; ++i) {
+                const Vec3 p = distance.position(i, j, k);
+                const double hole = std::max(std::abs(p.x) - 15.0 * mm, std::abs(p.y) - half);
+                distance.at(i, j, k) =
+                    static_cast<float>(std::max(walls.distance(p - Vec3(0.0, 0.0, 5.5 * mm)), -hole));
+            }
+    body->density = distance;
+    task->guide = training::GuideFile{"guide.vdb", {0.0, 0.0, 1.0}, 1};
+    task->guide_body = std::move(body);
+    return task;
+}
+
+bool is_guided(const NodeSetting& setting) {
+    const auto guide = setting.words.find("guide");
+    return guide != setting.words.end() && guide->second != "none";
+}
+
 /// A node and what it is wired to. Inputs of the hand follow `hand`; all others stand still.
 class DrivenNode {
 public:
@@ -198,7 +248,12 @@ public:
         wall_stiffness_ = draws.between(100.0, 200e3);
         wall_depth_ = draws.chance(0.5) ? draws.between(0.1 * mm, 5.0 * mm) : 1.0;
         for (const auto& [name, number] : trial.setting.numbers) node_.set_value(name, number);
-        for (const auto& [name, word] : trial.setting.words) node_.set(name, word);
+        for (const auto& [name, word] : trial.setting.words)
+            if (name != "guide") node_.set(name, word);
+        if (is_guided(trial.setting)) {
+            const auto kerf = trial.setting.numbers.find("kerf");
+            node_.asset("guide", guide_for(kerf == trial.setting.numbers.end() ? 1.0 * mm : kerf->second));
+        }
         if (declared_.has_held) node_.set("held", "1");
         node_.disconnect_optional();
         if (trial.type->name == "vessel") hold_segment(trial.setting.numbers.contains("pedicle"));
@@ -245,7 +300,8 @@ private:
         const std::string& name = port.name;
         const ValueType* const type = port.type;
         if (type == &value_type<Pose>()) {
-            const bool is_hand = !port.is_of_world && (!has_hand_ || name == "hand" || name == "pose");
+            const bool is_hand =
+                !port.is_of_world && (!has_hand_ || name == "hand" || name == "pose" || name == "point");
             if (port.is_optional && !is_hand) return;
             has_hand_ = has_hand_ || is_hand;
             if (is_hand) node_.feed<Pose>(name, [this](std::int64_t) { return hand_; });
@@ -627,7 +683,8 @@ std::vector<const NodeType*> force_types() {
 }
 
 std::vector<NodeSetting> pairwise_corners(const NodeType& type) {
-    const std::vector<Factor> factors = Declared(type).factors;
+    std::vector<Factor> factors = Declared(type).factors;
+    std::erase_if(factors, [](const Factor& factor) { return !factor.is_in_corners; });
     const std::size_t count = factors.size();
     using Level = std::pair<std::size_t, std::size_t>;  // factor, level
     std::set<std::pair<Level, Level>> open;
@@ -667,8 +724,20 @@ std::vector<NodeSetting> pairwise_corners(const NodeType& type) {
     return rows;
 }
 
-NodeSetting random_setting(const NodeType& type, std::uint64_t n) {
-    Draws draws{{mix(n ^ 0x5e77)}};
+namespace {
+
+/// False where the node refuses what its parameters are together.
+bool is_accepted(const NodeType& type, const NodeSetting& setting) {
+    try {
+        const DrivenNode node({.type = &type, .setting = setting, .hand = {}});
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+NodeSetting drawn_setting(const NodeType& type, std::uint64_t seed) {
+    Draws draws{{mix(seed)}};
     NodeSetting setting;
     for (const Factor& factor : Declared(type).factors) {
         const bool is_default = draws.chance(0.3);
@@ -689,9 +758,43 @@ NodeSetting random_setting(const NodeType& type, std::uint64_t n) {
     return setting;
 }
 
+/// Members that contradict each other keep their defaults, as few as it finds in a random order.
+NodeSetting repaired(const NodeType& type, NodeSetting setting, std::uint64_t seed) {
+    std::vector<std::string> names;
+    for (const auto& [name, number] : setting.numbers) names.push_back(name);
+    for (const auto& [name, word] : setting.words) names.push_back(name);
+    Draws draws{{mix(seed ^ 0xface)}};
+    for (std::size_t n = names.size(); n > 1; --n) std::swap(names[n - 1], names[draws.index(n)]);
+    const auto without = [](NodeSetting from, const std::string& name) {
+        from.numbers.erase(name);
+        from.words.erase(name);
+        return from;
+    };
+    for (const std::string& name : names)
+        if (NodeSetting one = without(setting, name); is_accepted(type, one)) return one;
+    for (const std::string& name : names) {
+        setting = without(std::move(setting), name);
+        if (is_accepted(type, setting)) break;
+    }
+    return setting;
+}
+
+}  // namespace
+
+NodeSetting random_setting(const NodeType& type, std::uint64_t n) {
+    constexpr std::uint64_t attempts = 16;
+    const std::uint64_t seed = n ^ 0x5e77;
+    NodeSetting setting = drawn_setting(type, seed);
+    for (std::uint64_t k = 1; k < attempts && !is_accepted(type, setting); ++k)
+        setting = drawn_setting(type, seed + (k << 32));
+    return is_accepted(type, setting) ? setting : repaired(type, std::move(setting), seed);
+}
+
 std::vector<NodeSetting> bench_settings(const NodeType& type, std::uint64_t random_count) {
     std::vector<NodeSetting> settings(5);
-    for (NodeSetting& corner : pairwise_corners(type)) settings.push_back(std::move(corner));
+    for (NodeSetting& corner : pairwise_corners(type))
+        settings.push_back(is_accepted(type, corner) ? std::move(corner)
+                                                     : repaired(type, std::move(corner), settings.size()));
     for (std::uint64_t n = 0; n < random_count; ++n) settings.push_back(random_setting(type, n));
     return settings;
 }
@@ -705,7 +808,8 @@ ForceOutcome run_trial(const ForceTrial& trial) {
     ForceOutcome outcome;
     Draws draws{{mix(trial.seed)}};
     // Tools cut along their y axis.
-    const Quat rest = draws.chance(0.5) ? rotation_by({-0.5 * std::numbers::pi, 0.0, 0.0}) : Quat(1.0, 0.0, 0.0, 0.0);
+    const bool is_upright = draws.chance(0.5) || is_guided(trial.setting);
+    const Quat rest = is_upright ? blade_down : Quat(1.0, 0.0, 0.0, 0.0);
     try {
         const Surface surface = surface_of(trial, rest);
         judge_path(trial, closed_path(trial, surface, rest, draws), outcome);

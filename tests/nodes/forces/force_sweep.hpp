@@ -56,10 +56,11 @@ std::vector<const NodeType*> force_types();
 /// Every pair of extreme values of two members occurs in at least one of these settings (covering array of strength 2).
 std::vector<NodeSetting> pairwise_corners(const NodeType& type);
 
-/// Random setting number `n`: each member keeps its default with a probability of 0.3.
+/// Random setting number `n` that the node accepts: each member keeps its default with a probability of 0.3.
 NodeSetting random_setting(const NodeType& type, std::uint64_t n);
 
-/// The settings of the bench, by number: five times the defaults, the corners, and random ones.
+/// The settings of the bench, by number: five times the defaults, the corners, and random ones. Where the node refuses a
+/// corner, members that contradict each other keep their defaults.
 std::vector<NodeSetting> bench_settings(const NodeType& type, std::uint64_t random_count);
 
 /// Random hand number `n`: 0.5 to 20 N, 0.01 to 1 m/s, 500 to 4000 Hz, each uniform in its logarithm.
