@@ -20,6 +20,7 @@ void SurfaceProxy::reset(const Vec3& at) noexcept {
     state_ = {};
     friction_ = unset;
     stride_ = far;
+    wave_ = {};
     state_.proxy = at_ = at;
     started_ = true;
     seen_count_ = 0;
@@ -41,8 +42,8 @@ SurfaceProxy::View SurfaceProxy::look(const Vec3& at, std::span<const ProxySurfa
 }
 
 ProxyTexture::Lift SurfaceProxy::lift(const Vec3& at, const Vec3& goal,
-                                      std::span<const ProxySurface> surfaces) noexcept {
-    const View view = look(at, surfaces);
+                                      std::span<const ProxySurface> surfaces) const noexcept {
+    const View& view = last_view_;
     PlanePushes pushes;
     nearest_within(goal, at, view.planes.all(), &pushes);
     ProxyTexture::Lift sum;
@@ -103,6 +104,7 @@ bool SurfaceProxy::is_open(const Vec3& a, const View& from, const Vec3& b, const
 
 Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept {
     View here = look(from, surfaces);
+    has_view_ = !budget_.is_spent();
     double share = 1.0;  // of the distance to try: reduced after a move that made no progress
     for (int move = 0; move < max_moves; ++move) {
         Vec3 wanted = goal;
@@ -144,6 +146,7 @@ Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurfac
         here = there;
         share = std::min(1.0, 2.0 * share);
     }
+    last_view_ = here;
     return from;
 }
 
@@ -191,8 +194,10 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
     Vec3 smooth = lead(before, goal, surfaces);
     const double distance = glm::length(smooth - goal);
     state_.normal = distance > proxy_touch ? (smooth - goal) / distance : Vec3(0.0);
-    const ProxyTexture::Lift wave =
-        crest > 0.0 && distance > proxy_touch ? lift(smooth, goal, surfaces) : ProxyTexture::Lift{};
+    // Without a view the proxy has not moved, and is on the wave on which it was.
+    if (!(crest > 0.0 && distance > proxy_touch)) wave_ = {};
+    else if (has_view_) wave_ = lift(smooth, goal, surfaces);
+    const ProxyTexture::Lift& wave = wave_;
     const double below = crest - wave.height;  // the crests
     const double depth = distance - below;
     state_.in_contact = depth > proxy_touch && distance > proxy_touch;

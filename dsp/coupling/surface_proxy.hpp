@@ -76,8 +76,8 @@ private:
     };
 
     View look(const Vec3& at, std::span<const ProxySurface> surfaces) noexcept;
-    /// The texture below a proxy at `at` that is pushed away from `goal` by the planes that it touches.
-    ProxyTexture::Lift lift(const Vec3& at, const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept;
+    /// The texture below a proxy at `at` that is pushed away from `goal` by the planes that the last `lead` has seen there.
+    ProxyTexture::Lift lift(const Vec3& at, const Vec3& goal, std::span<const ProxySurface> surfaces) const noexcept;
     /// Projects out of fields that a move has entered.
     Vec3 settle(Vec3 at, std::span<const ProxySurface> surfaces) noexcept;
     /// False when the line between the two positions crosses a wall of a field.
@@ -91,6 +91,9 @@ private:
     ProxyShape shape_;  // up to the crests of the texture
     Vec3 at_{0.0};  // m, of the proxy on the envelope of the crests
     ProxySurface::Budget budget_;  // of this update
+    View last_view_;  // where the last `lead` ended
+    bool has_view_ = false;  // false: no triangles were left for it
+    ProxyTexture::Lift wave_;  // below the proxy
     double stride_ = far;  // m: longest move that is tried, on triangles
     double friction_ = unset;  // coefficient now; unset: that of static friction
     ProxyState state_;

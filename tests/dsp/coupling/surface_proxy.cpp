@@ -389,6 +389,41 @@ TEST_CASE("a proxy on triangles tests a bounded number of them, never enters and
     }
 }
 
+TEST_CASE("a proxy that has no triangles left for this tick stays on the wave of its texture") {
+    int near_limit = 0, arrived = 0;
+    double most = 0.0;
+    for (std::size_t slivers = 200; slivers <= 1600; slivers += 100) {
+        // A flat face whose triangles all meet in its middle.
+        geometry::TriangleSurface fan;
+        fan.vertices.push_back({0.0, 0.0, 0.0});
+        for (std::size_t n = 0; n < slivers; ++n) {
+            const double turn = 2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(slivers);
+            fan.vertices.push_back(30.0 * mm * Vec3(std::cos(turn), std::sin(turn), 0.0));
+            const auto next = static_cast<int>(n + 1);
+            fan.triangles.push_back({0, next, static_cast<int>((n + 1) % slivers) + 1});
+        }
+        const geometry::TriangleTree tree(fan);
+        const coupling::ProxySurface surface{nullptr, &tree, {}};
+        coupling::SurfaceProxy proxy;
+        proxy.settings.shape.radius = 3.0 * mm;
+        proxy.settings.texture = {0.2 * mm, 3.0 * mm};
+        proxy.settings.stiffness = 500.0;
+        proxy.reset({-3.0 * mm, -2.0 * mm, 4.0 * mm});
+        for (int n = 0; n < 200; ++n) {
+            const Vec3 hand(0.03 * n * mm - 3.0 * mm, 0.02 * n * mm - 2.0 * mm, 2.0 * mm);
+            const coupling::ProxyState& now = proxy.update(hand, {&surface, 1});
+            if (std::hypot(now.proxy.x - hand.x, now.proxy.y - hand.y) > 1e-6) continue;
+            ++arrived;
+            near_limit += proxy.tested() > coupling::SurfaceProxy::max_triangles * 3 / 4;
+            const double wave = proxy.settings.texture.at({hand.x, hand.y, 0.0}, {0.0, 0.0, 1.0}).height;
+            most = std::max(most, std::abs(now.proxy.z - 3.0 * mm - wave));
+        }
+    }
+    CHECK(arrived > 1000);
+    CHECK(near_limit > 0);
+    CHECK(most < 0.02 * mm);
+}
+
 TEST_CASE("a proxy keeps its head: no surface, nowhere, inside of a body, far jumps") {
     const coupling::ProxySurface surface{&proxy_ball(), nullptr, {}};
     coupling::SurfaceProxy proxy;
