@@ -125,6 +125,28 @@ std::unique_ptr<Sink> make_null_sink() {
     };
     return std::make_unique<NullSink>();
 }
+std::unique_ptr<Sink> both_sinks(std::unique_ptr<Sink> first, std::unique_ptr<Sink> second) {
+    class BothSinks : public Sink {
+    public:
+        BothSinks(std::unique_ptr<Sink> first, std::unique_ptr<Sink> second)
+            : first_(std::move(first)), second_(std::move(second)) {}
+
+        void take(std::int64_t at, const std::byte* values, std::size_t count) override {
+            first_->take(at, values, count);
+            second_->take(at, values, count);
+        }
+        void finish() override {
+            first_->finish();
+            second_->finish();
+        }
+        std::string take_message() override { return first_->take_message(); }
+
+    private:
+        std::unique_ptr<Sink> first_, second_;
+    };
+    if (!first || !second) return first ? std::move(first) : std::move(second);
+    return std::make_unique<BothSinks>(std::move(first), std::move(second));
+}
 std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const StreamFormat& format) {
     return std::make_unique<CsvSink>(path, format);
 }

@@ -37,6 +37,8 @@ public:
 std::unique_ptr<Sink> make_sound_file_sink(const std::filesystem::path& path, const StreamFormat& format);
 /// Discards all values.
 std::unique_ptr<Sink> make_null_sink();
+/// Passes values to `first`, then to `second`, with the messages of `first`; either may be null.
+std::unique_ptr<Sink> both_sinks(std::unique_ptr<Sink> first, std::unique_ptr<Sink> second);
 /// A CSV file: a header with column names and units, then lines of time in s and values.
 std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const StreamFormat& format);
 

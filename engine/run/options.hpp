@@ -27,6 +27,13 @@ class GroupRuntime;
 /// Returns the destination for every value of a group's outputs, as frames of that layout, or null.
 using TapMaker = std::function<std::unique_ptr<io::Sink>(const io::FrameLayout&, const GroupRuntime&)>;
 
+/// The values in a take. Its decisions repeat them to the bit.
+enum class TakeValues : std::uint8_t {
+    all,
+    none,  ///< until `Engine::record`
+    on_request,  ///< as none; the take is not wanted before `Engine::record`, and may be given up until then
+};
+
 struct EngineOptions {
     double seconds = 1.0;
     int block = 0;               ///< most samples per call of an audio group, 0: the patch's quantum
@@ -36,8 +43,9 @@ struct EngineOptions {
     const std::vector<io::RecordedDevice>* devices =
         nullptr;  ///< stand-ins for the devices of the run that is replayed
     take::TakeWriter* take = nullptr;                          ///< records the run
-    bool record_values = true;  ///< the take has values from the beginning; otherwise from `Engine::record` on
-    std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< maximum bytes of decisions without recorded values
+    TakeValues take_values = TakeValues::all;
+    std::uint64_t longest_journal = std::uint64_t{4}
+                                    << 30;  ///< maximum bytes of decisions of a take that is not wanted yet
     observe::Observer* observer = nullptr;  ///< receives copies of values; does not affect the run
     /// For `check`: builds the plan without running it. Hardware is not opened, and a plan that is too stiff is not
     /// rejected.

@@ -19,34 +19,13 @@ namespace {
 // Between making the streams and their first values: time enough to hand them to every group.
 constexpr Flicks record_lead = flicks_per_second / 50;
 
-/// Values go to the take first, then to another sink.
-class BothSinks : public io::Sink {
-public:
-    BothSinks(std::unique_ptr<io::Sink> take, std::unique_ptr<io::Sink> other)
-        : take_(std::move(take)), other_(std::move(other)) {}
-
-    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
-        take_->take(first, values, count);
-        other_->take(first, values, count);
-    }
-    void finish() override {
-        take_->finish();
-        other_->finish();
-    }
-    std::string take_message() override { return take_->take_message(); }
-
-private:
-    std::unique_ptr<io::Sink> take_, other_;
-};
-
 TapMaker tap_maker(const EngineOptions& options) {
     if (!options.take) return options.tap;
     return [take = options.take, tap = options.tap](const io::FrameLayout& layout,
                                                     const GroupRuntime& group) -> std::unique_ptr<io::Sink> {
         std::unique_ptr<io::Sink> other = tap ? tap(layout, group) : nullptr;
         std::unique_ptr<io::Sink> taken = take->sink(layout, group);
-        if (!other || !taken) return taken ? std::move(taken) : std::move(other);
-        return std::make_unique<BothSinks>(std::move(taken), std::move(other));
+        return io::both_sinks(std::move(taken), std::move(other));
     };
 }
 
@@ -59,7 +38,9 @@ Recorder::Recorder(const EngineOptions& options, io::EngineHost& host, Losses& l
       longest_journal_(options.longest_journal),
       journal_(options.take),
       taps_(tap_maker(options)) {
-    if (options.take) wants_ = records_ = was_recorded_ = options.record_values;
+    if (!options.take) return;
+    wants_ = records_ = options.take_values == TakeValues::all;
+    was_recorded_ = options.take_values != TakeValues::on_request;
 }
 
 RecordStream* Recorder::stream_for(const io::FrameLayout& layout, const GroupRuntime& group) {

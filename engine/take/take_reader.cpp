@@ -255,6 +255,12 @@ std::vector<TakeDamage> Take::damages() const {
     return found;
 }
 
+void Take::require_values() const {
+    if (streams.empty())
+        throw Error(fmt::format("{0}: the take has no values; write it with values by 'tactus replay {0} --record NEW'",
+                                folder.string()));
+}
+
 void Take::drop_unreadable_streams() {
     const auto frames = frames_of_files(folder, streams);
     std::erase_if(streams, [&](const TakeStreamInfo& stream) { return !frames.contains(stream.file); });

@@ -73,6 +73,8 @@ struct Take {
     /// Returns the files whose length differs from the length that the run wrote. In an incomplete take only the log
     /// can be checked.
     std::vector<TakeDamage> damages() const;
+    /// Throws Error if the run recorded no values.
+    void require_values() const;
     /// Removes unreadable streams.
     void drop_unreadable_streams();
 };

@@ -7,8 +7,6 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
-#include "engine/run/group_runtime.hpp"
-#include "engine/take/take_sink.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "graph/plugin/plugins.hpp"
 
@@ -16,7 +14,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <fstream>
 
 namespace tactus::take {
@@ -110,7 +107,12 @@ std::string cpu_family() {
     return vendor.empty() ? "unknown" : fmt::format("{} family {} model {}", vendor, family, model);
 }
 
-TakeWriter::TakeWriter(fs::path folder, TakeAbout about) : folder_(std::move(folder)), about_(std::move(about)) {
+TakeWriter::TakeWriter(fs::path folder, TakeAbout about)
+    : folder_(std::move(folder)), about_(std::move(about)), streams_([this](const std::string& json) {
+          holds_a_run_ = true;
+          if (is_lost_) throw Error(loss());
+          line(json);
+      }) {
     std::error_code failure;
     fs::create_directories(folder_ / "streams", failure);
     if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder_.string(), failure.message()));
@@ -207,56 +209,8 @@ void TakeWriter::device(const build::DeviceSlot& slot) {
              .dump());
 }
 
-std::string TakeWriter::file_for(const std::string& group) {
-    std::string name = group;
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_') c = '-';
-    if (name.starts_with('.')) name.front() = '-';
-    std::string stem = "streams/" + name;
-    for (int again = 2; files_.contains(stem); ++again) stem = fmt::format("streams/{}-{}", name, again);
-    files_.insert(stem);
-    return stem + ".wav";
-}
-
 std::unique_ptr<io::Sink> TakeWriter::sink(const io::FrameLayout& layout, const run::GroupRuntime& group) {
-    std::vector<TakeFile> files;
-    int channels = max_channels;
-    for (const io::FrameColumn& column : layout.columns) {
-        const auto wide = static_cast<int>(channels_of(*column.type).size());
-        if (channels + wide > max_channels) {
-            files.push_back({file_for(group.plan->name), {}});
-            channels = 0;
-        }
-        files.back().columns.push_back(column);
-        channels += wide;
-    }
-    return std::make_unique<TakeSink>(
-        folder_, group.plan->period, layout.bytes, std::move(files),
-        TakeSink::Told{
-            .opened = [this, &group](const TakeFile& file, std::int64_t start) { opened(file, start, group); },
-            .finished =
-                [this](const std::string& file, std::int64_t frames) {
-                    const std::lock_guard lock(writing_);
-                    frames_[file] = frames;
-                },
-            .cut = [this] { has_cut_stream_ = true; }});
-}
-
-void TakeWriter::opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group) {
-    holds_a_run_ = true;
-    if (is_lost_) throw Error(loss());
-    Json outputs = Json::array();
-    for (const io::FrameColumn& column : file.columns)
-        outputs.push_back(
-            {{"port", column.port}, {"type", column.type->name}, {"channels", channels_of(*column.type)}});
-    line(Json{{"stream", file.name},
-              {"group", group.plan->name},
-              {"group_number", group.index},
-              {"period_flicks", group.plan->period},
-              {"rate_hz", rate_of(group.plan->period)},
-              {"start", start},
-              {"outputs", outputs}}
-             .dump());
+    return streams_.sink(folder_, layout, group);
 }
 
 std::string TakeWriter::describe_assets(const patch::Patch& patch) { return assets_json(patch).dump(); }
@@ -319,10 +273,10 @@ void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>
     try {
         log_->finish();
         // The log repeats the whole run, but not every value can be compared: the take counts as cut off.
-        if (has_cut_stream_) return;
+        if (streams_.is_cut()) return;
         Json json{{"ports", Json::object()}, {"holds", {{"timing.log", log_->records()}, {"events.jsonl", lines_}}}};
         for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
-        for (const auto& [file, frames] : frames_) json["holds"][file] = frames;
+        for (const auto& [file, frames] : streams_.frames()) json["holds"][file] = frames;
         file::write_whole_file(folder_ / "result.json", json.dump(2) + "\n");
     } catch (const Error& error) {
         lose(error.message());

@@ -15,6 +15,7 @@
 #include "engine/io/host.hpp"
 #include "engine/io/streams.hpp"
 #include "engine/take/take_stream.hpp"
+#include "engine/take/take_streams.hpp"
 #include "engine/take/timing_log.hpp"
 #include "graph/patch/patch.hpp"
 
@@ -29,13 +30,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus::run {
-class GroupRuntime;
-}
-
 namespace tactus::take {
-
-struct TakeFile;
 
 /// Format number of take.json. Format 2, with one file per output, can be read as well; other formats are rejected.
 constexpr int take_format = 3, oldest_take_format = 2;
@@ -93,22 +88,16 @@ public:
 
 private:
     void line(const std::string& json);
-    /// Returns a name that no other file of the take has.
-    std::string file_for(const std::string& group);
-    void opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group);
-
     std::filesystem::path folder_;
     TakeAbout about_;
     std::unique_ptr<TimingLogWriter> log_;
     std::unique_ptr<file::GrowingFile> events_;
     mutable std::mutex writing_;  // every thread that drains a stream writes lines
     std::int64_t lines_ = 0;  // of events.jsonl
-    std::map<std::string, std::int64_t> frames_;  // of each completed stream
     std::atomic<bool> is_lost_{false};
     std::atomic<bool> holds_a_run_{false};  // some data of a run was written
-    std::atomic<bool> has_cut_stream_{false};  // one of the streams ends before the run
     std::string loss_;
-    std::unordered_set<std::string> files_;
+    TakeStreams streams_;
     std::int64_t flush_ns_ = 0;  // of the next flush
     std::uint64_t flush_bytes_ = 0;  // log size at which a flush is due, if not due by time
 };

@@ -30,7 +30,7 @@ run::Engine::PortHashes run_with(const std::filesystem::path& folder,
     options.seconds = 1.0;
     options.live = true;
     options.take = &take;
-    options.record_values = false;
+    options.take_values = run::TakeValues::on_request;
     if (choose) choose(options);
     run::Engine engine(compile_text(edited(3)), options);
     run::LiveOptions live;

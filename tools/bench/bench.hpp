@@ -27,6 +27,7 @@ Verb view_verb();
 Verb pictures_verb();
 Verb lateness_verb();
 Verb scrub_verb();
+Verb takes_verb();
 Verb snap_verb();
 Verb passivity_verb();
 Verb device_verb();

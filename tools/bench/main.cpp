@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
         bench::assembly_verb(),    bench::shafts_verb(),   bench::proposals_verb(),   bench::segment_verb(),
         bench::vessel_verb(),      bench::rope_verb(),     bench::reconstruct_verb(), bench::peers_verb(),
         bench::fundamental_verb(), bench::identify_verb(), bench::verdicts_verb(),    bench::experiments_verb(),
-        bench::sweep_verb()};
+        bench::sweep_verb(),       bench::takes_verb()};
     return command::command_line(
         {"tactus bench", "benchmarks of this machine, compared with other programs if they are installed", verbs}, argc,
         argv);

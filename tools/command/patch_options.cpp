@@ -56,4 +56,11 @@ void add_site_options(VerbOptions& verb, run::SiteText& text) {
         .needs(site);
 }
 
+void add_record_options(VerbOptions& verb, std::filesystem::path& folder, bool& values) {
+    const Option record = verb.add("--record", folder, "record the run as a take, a folder that 'replay' repeats");
+    verb.flag("!--no-values", values,
+              "record no values, for runs of hours: the take still repeats them, and 'replay --record' writes them")
+        .needs(record);
+}
+
 }  // namespace tactus::command

@@ -7,6 +7,7 @@
 #include "tools/run/saw_choice.hpp"
 #include "tools/run/site_choice.hpp"
 
+#include <filesystem>
 #include <optional>
 
 namespace tactus::command {
@@ -23,5 +24,8 @@ void add_saw_options(VerbOptions& verb, run::SawChoice& saw);
 void use_saw(run::PatchChoice& choice, const run::SawChoice& saw);
 /// --site, --approach and --along, for run::choose_site.
 void add_site_options(VerbOptions& verb, run::SiteText& text);
+
+/// --record and --no-values.
+void add_record_options(VerbOptions& verb, std::filesystem::path& folder, bool& values);
 
 }  // namespace tactus::command

@@ -26,6 +26,7 @@ RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, con
     if (!choice.record.empty()) {
         take = make_take(choice, choice.record, options.seconds, false);
         options.take = take.get();
+        if (!choice.record_values) options.take_values = run::TakeValues::none;
     }
     run::Engine engine(std::move(plan), options);
     engine.render(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), [&](double done) {

@@ -56,6 +56,7 @@ RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, obs
     if (!choice.record.empty()) {
         take_ = make_take(choice, choice.record, options.seconds, true);
         options.take = take_.get();
+        if (!choice.record_values) options.take_values = run::TakeValues::none;
     } else if (choice.keeps_journal) begin_journal(options);
     engine_ = std::make_unique<run::Engine>(std::move(plan), options);
     check_log(*engine_, choice.log, folder());
@@ -76,7 +77,7 @@ void RunSession::begin_journal(run::EngineOptions& options) {
     }
     take_ = make_take(choice_, folder() / fmt::format("{}{}", name, ::getpid()), options.seconds, true);
     options.take = take_.get();
-    options.record_values = false;
+    options.take_values = run::TakeValues::on_request;
     is_journal_ = true;
 }
 

@@ -243,6 +243,7 @@ PortValues PortCollector::values() const {
 
 PortValues port_values_of(const std::filesystem::path& folder, const std::set<std::string>& ports) {
     const take::Take taken = take::Take::load(folder);
+    taken.require_values();
     PortValues values;
     for (const std::string& name : ports) {
         const auto info = std::ranges::find(taken.streams, port_and_channel(name).first, &take::TakeStreamInfo::port);

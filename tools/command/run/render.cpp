@@ -31,6 +31,7 @@ struct RenderChoice : PatchChoice {
     int threads = 0;      // 0: one per core
     std::string block;    // "", a number, or "random"
     std::filesystem::path log, record;
+    bool record_values = true;
     bool overwrite = false;  // replace existing results
     FrameChoice frames;
     bool json = false;
@@ -64,6 +65,7 @@ int render(const RenderChoice& choice) {
     if (!choice.record.empty()) {
         take = make_take(choice, choice.record, options.seconds, false);
         options.take = take.get();
+        if (!choice.record_values) options.take_values = run::TakeValues::none;
     }
     std::unique_ptr<FrameWriter> frames;
     if (choice.frames.frames > 0) {
@@ -152,7 +154,7 @@ Action add_render(VerbOptions& verb) {
     verb.old("--threads", "--jobs");
     verb.add("--block", choice->block, "greatest number of samples per call, or 'random'; does not change the output");
     verb.add("--log", choice->log, "use the timing decisions of a live run, from a file of 'run --log'");
-    verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
+    add_record_options(verb, choice->record, choice->record_values);
     add_frame_options(verb, choice->frames);
     verb.flag("--json", choice->json, "print the summary as JSON");
     return [choice, site, saw, scale] {

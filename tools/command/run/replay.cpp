@@ -3,6 +3,7 @@
 #include "dsp/core/error.hpp"
 #include "engine/run/engine.hpp"
 #include "engine/take/take_compare.hpp"
+#include "engine/take/take_copy.hpp"
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
@@ -30,7 +31,7 @@ namespace {
 using file::Json;
 
 struct ReplayChoice {
-    std::filesystem::path take, out;  // out: folder for the results; empty: none
+    std::filesystem::path take, out, record;  // folders for the results and for a take with all values; empty: none
     bool json = false;
     bool overwrite = false;
     bool anyway = false;  // even if assets have changed
@@ -57,10 +58,12 @@ struct Verdict {
     std::vector<std::string> hashes;  ///< outputs whose hash differs
     std::optional<take::TakeDifference> first;
     std::uint64_t compared = 0;
+    std::size_t compared_hashes = 0;
     bool is_complete = false;
 
     bool differs() const { return first || !damages.empty() || !hashes.empty(); }
-    bool is_equal_so_far() const { return !differs() && compared > 0; }
+    /// A take without values has a hash of all values of each output.
+    bool is_equal_so_far() const { return !differs() && (compared > 0 || compared_hashes > 0); }
     bool is_identical() const { return is_equal_so_far() && is_complete; }
 };
 
@@ -74,7 +77,10 @@ void print(const Verdict& verdict, std::size_t outputs, double seconds) {
     else if (verdict.damages.empty() && !verdict.hashes.empty())
         fmt::print("differs: the hashes of {}\n", fmt::join(verdict.hashes, ", "));
     if (verdict.differs()) return;
-    if (verdict.compared == 0)
+    if (verdict.compared == 0 && verdict.compared_hashes > 0)
+        fmt::print("identical: the hash of {}, {:.3g} s; the take has no values\n",
+                   counted(verdict.compared_hashes, "output"), seconds);
+    else if (verdict.compared == 0)
         fmt::print("{}0 values compared: the take has none\n", verdict.is_complete ? "" : "cut off; ");
     else if (!verdict.is_complete)
         fmt::print("cut off; {} compared, equal so far; {:.3g} s can be repeated\n", counted(verdict.compared, "value"),
@@ -123,8 +129,11 @@ int replay(const ReplayChoice& choice) {
         folder.emplace(OutputChoice{choice.out, choice.overwrite});
         options.folder = choice.out;
     }
-    options.tap = [&comparison](const io::FrameLayout& layout, const run::GroupRuntime& group) {
-        return comparison.tap(layout, group);
+    std::optional<take::TakeCopy> copy;
+    if (!choice.record.empty()) copy.emplace(take, choice.record);
+    options.tap = [&](const io::FrameLayout& layout, const run::GroupRuntime& group) -> std::unique_ptr<io::Sink> {
+        std::unique_ptr<io::Sink> compared = comparison.tap(layout, group);
+        return copy ? io::both_sinks(copy->sink(layout, group), std::move(compared)) : std::move(compared);
     };
     ReplayedTake repeated(take, options, assets);
     run::Engine& engine = repeated.engine();
@@ -149,8 +158,16 @@ int replay(const ReplayChoice& choice) {
     }
     for (const std::string& loss : losses) fmt::print(stderr, "tactus: {}\n", loss);
 
-    const Verdict verdict{damages, differing_hashes(take, engine), comparison.first_difference(),
-                          comparison.compared_values(), take.is_complete};
+    const Verdict verdict{damages,
+                          differing_hashes(take, engine),
+                          comparison.first_difference(),
+                          comparison.compared_values(),
+                          take.result.size(),
+                          take.is_complete};
+    if (copy && verdict.differs())
+        fmt::print(stderr, "tactus: {} is not written, because the replay differs from the run\n",
+                   choice.record.string());
+    else if (copy) copy->finish();
     const double covered = engine.progress_seconds();
     if (choice.json) {
         Json json{{"identical", verdict.is_identical()},
@@ -185,6 +202,8 @@ Action add_replay(VerbOptions& verb) {
     verb.add("-o,--out", choice->out,
              "folder for the results: sounds, traces, bones, summary.json; of a run that was cut off as far as the "
              "take reaches");
+    verb.add("--record", choice->record,
+             "write the take again into this folder, with every value: of a run with --no-values");
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.flag("--anyway", choice->anyway, "replay even if assets have changed");
     verb.flag("--json", choice->json, "as JSON");

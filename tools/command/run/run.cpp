@@ -97,7 +97,7 @@ Action add_run(VerbOptions& verb) {
     verb.add("-o,--out", choice->out, "folder for the results (default: PATCH-run, or PATCH-run-2 and so on)");
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.add("--log", choice->log, "write the timing decisions to this file, for 'render --log'");
-    verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
+    add_record_options(verb, choice->record, choice->record_values);
     verb.flag("--json", choice->json, "print the summary as JSON and nothing else");
     const Option window =
         verb.flag("--view", choice->view.wanted,

@@ -91,6 +91,9 @@ class Take(Mapping[str, Stream]):
 
     def parts(self, port: str) -> list[Stream]:
         """The stretches of an output: an edit, or recording that is switched off and on, begins another file."""
+        if not self._places:
+            raise Error(f"{self.folder}: no values; write the take with values by "
+                        f"'tactus replay {self.folder} --record NEW'")
         if port not in self._places:
             raise KeyError(f"{self.folder} has no output '{port}'; it has {', '.join(self._places)}")
         return [self._stream(port, *place) for place in self._places[port]]

@@ -30,6 +30,7 @@ std::vector<Range> joined(std::vector<Range> stretches) {
 }  // namespace
 
 TakeFeed::TakeFeed(const take::Take& take) : take_(take) {
+    take.require_values();
     std::set<std::string> files;
     for (const take::TakeStreamInfo& info : take.streams) {
         const ValueType* const type = type_named(info.type);

@@ -99,6 +99,39 @@ TEST_CASE("a rendered take is repeated to the bit, and one whose values were cha
     CHECK(told.out.find("differs: hand.pose at tick 400") != std::string::npos);
 }
 
+TEST_CASE("a take without values is repeated to the hash of each output, and replay writes it again with all values") {
+    Folder folder;
+    folder.write("touch.toml", touch);
+    const std::string take = (folder.path / "take").string(), whole = (folder.path / "whole").string();
+    const std::string run = "render " + (folder.path / "touch.toml").string() + " --seconds 0.5 --out " +
+                            (folder.path / "out").string() + " --record ";
+    REQUIRE(folder.tactus(run + take + " --no-values").code == 0);
+    REQUIRE(folder.tactus(run + whole + " --overwrite").code == 0);
+    CHECK(fs::is_empty(fs::path(take) / "streams"));
+    const Outcome same = folder.tactus("replay " + take);
+    CHECK(same.code == 0);
+    CHECK(same.out.starts_with("identical: the hash of "));
+    CHECK(same.out.find("the take has no values") != std::string::npos);
+
+    const std::string again = (folder.path / "again").string();
+    REQUIRE(folder.tactus("replay " + take + " --record " + again).code == 0);
+    CHECK(slurp(fs::path(again) / "timing.log") == slurp(fs::path(take) / "timing.log"));
+    const Outcome filled = folder.tactus("replay " + again);
+    CHECK(filled.code == 0);
+    CHECK(filled.out.starts_with("identical: "));
+    // As many values as a take has that recorded them.
+    CHECK(filled.out == folder.tactus("replay " + whole).out);
+
+    // A replay that differs from the run is no source of its values.
+    json result = json::parse(slurp(fs::path(take) / "result.json"));
+    result["ports"]["hand.pose"] = "0000000000000000";
+    std::ofstream(fs::path(take) / "result.json") << result.dump();
+    const Outcome other = folder.tactus("replay " + take + " --record " + (folder.path / "other").string());
+    CHECK(other.code == 1);
+    CHECK(other.err.find("is not written, because the replay differs") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder.path / "other"));
+}
+
 TEST_CASE("a run that is refused leaves no take behind, and the next try may use its folder") {
     Folder folder;
     const std::string patch = folder.write("touch.toml", touch).string(), take = (folder.path / "take").string();
