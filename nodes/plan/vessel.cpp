@@ -98,7 +98,8 @@ struct Vessel {
         settings.material.stiffness = stiffness;
         settings.material.radius = course->median_radius();
         settings.pedicle = pedicle;
-        // On its way of some centimetres a shorter one would be stretched to many times its length: no vessel, but a spring.
+        // On its way of some centimetres a shorter one would be stretched to many times its length: no vessel, but a spring. Its
+        // held points move by half a segment a substep: behind a fast hand they would lag, and give energy.
         if (pedicle > 0.0 && pedicle < min_pedicle)
             setup.fail("a pedicle of " + fmt::format("{:.3g}", pedicle * 1e3) +
                        " mm reaches no site; give at least 20 mm, or 0 mm for all of the vessel");
