@@ -20,8 +20,9 @@ SawBlade::SawBlade(const SawShape& shape, double stiffness)
 }
 
 SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive, const CuttingLaw& law,
-                          const volume::BoneSnapshot* guide) noexcept {
+                          const PlacedSolid* guide) noexcept {
     SawContact contact;
+    const Pose in_guide = guide ? guide->back * pose : pose;
     if (!is_valid(pose) || glm::length(pose.position) > 1e3 || !(drive.dt > 0.0)) {
         teeth_.forget();
         hold_.drop();
@@ -33,12 +34,12 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
     if (jumped) {
         teeth_.carry(pose);
         body_.carry(pose);
-        if (guide) front_.carry(pose);
+        if (guide) front_.carry(in_guide);
     }
     const bool was_waiting = hold_.state() == HoldState::waiting;
     hold_.tick(drive.dt, drive.release || jumped, stuck_, [&] {
         return teeth_.is_free(bone, pose) && body_.is_free({bone, guide}, pose) &&
-               (!guide || front_.is_free(*guide, pose));
+               (!guide || front_.is_free(*guide->solid, in_guide));
     });
     last_ = pose;
     contact.state = hold_.state();
@@ -46,17 +47,17 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
         if (was_waiting) {
             teeth_.seat(pose);
             body_.seat(pose);
-            front_.seat(pose);
+            front_.seat(in_guide);
         }
         teeth_.follow(bone, pose, drive);
         contact.feed = teeth_.cut(law, drive, tooth_spring_) / drive.dt;
         teeth_.settle();
         body_.follow({bone, guide}, pose, drive.running);
-        if (guide) front_.follow(*guide, pose, drive.running);
+        if (guide) front_.follow(*guide->solid, in_guide, drive.running);
     } else if (!was_waiting) {
         teeth_.release(pose, hold_.kept());
         body_.release(pose, hold_.kept());
-        if (guide) front_.release(pose, hold_.kept());
+        if (guide) front_.release(in_guide, hold_.kept());
     } else {
         stuck_ = false;
         return contact;
@@ -70,7 +71,11 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
         contact.count += body.count;
     };
     add(body_.push(pose.position));
-    if (guide) add(front_.push(pose.position));
+    if (guide) {
+        ToolBody::Sum front = front_.push(in_guide.position);
+        front.wrench = {guide->pose.rotate(front.wrench.force), guide->pose.rotate(front.wrench.torque)};
+        add(front);
+    }
     contact.side = std::abs(glm::dot(contact.wrench.force, axes[2]));
     stuck_ = contact.lag >= max_lag || glm::dot(contact.wrench.force, axes[1]) > 0.0 ||
              (contact.count > 0 && drive.rendered < 1.0);

@@ -31,7 +31,7 @@ public:
     /// One tick: the blade is held at `pose`. A pose that is none gives no force and drops the bone. `guide`: a solid that
     /// stops the blade and that no tooth cuts; null: none. Allocates nothing.
     SawContact step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive, const CuttingLaw& law,
-                    const volume::BoneSnapshot* guide = nullptr) noexcept;
+                    const PlacedSolid* guide = nullptr) noexcept;
 
     const ToothRow& teeth() const noexcept { return teeth_; }
     const ToolBody& body() const noexcept { return body_; }
@@ -42,7 +42,7 @@ private:
 
     SawShape shape_;
     ToothRow teeth_;
-    ToolBody body_, front_;  // the front meets guides only
+    ToolBody body_, front_;  // the front meets guides only, in their frame
     ToolHold hold_;
     double tooth_spring_ = 0.0;
     Pose last_;

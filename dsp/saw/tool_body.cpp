@@ -26,7 +26,7 @@ constexpr double guide_slack = 0.03e-3;  // m by which balls are thinner in a gu
 /// Bone and guide as a ball of the radius that it has in bone meets them.
 struct Both {
     const volume::BoneSnapshot& bone;
-    const volume::BoneSnapshot& guide;
+    const PlacedSolid& guide;
     double more = 0.0;  // m of radius in the guide beyond that in bone
 
     double value(const Vec3& p) const noexcept { return std::min(bone.value(p), guide.value(p) - more); }

@@ -22,13 +22,26 @@ struct BodyPoint {
     Vec3 at{0.0, 0.0, 0.0}, target{0.0, 0.0, 0.0};  ///< bone's frame, m
 };
 
-/// What a body meets: bone, and a guide that nothing cuts. Both in one frame.
+/// A solid that nothing cuts, a guide for instance, at a place of its own.
+struct PlacedSolid {
+    const volume::BoneSnapshot* solid = nullptr;
+    Pose pose;  ///< of its frame in that of the bone
+    Pose back = pose.inverse();
+
+    double value(const Vec3& p) const noexcept { return solid->value(back.apply(p)); }
+    volume::Sample sample(const Vec3& p) const noexcept {
+        volume::Sample here = solid->sample(back.apply(p));
+        here.gradient = pose.rotate(here.gradient);
+        return here;
+    }
+};
+
+/// What a body meets: bone, and a guide that nothing cuts.
 struct Solids {
     const volume::BoneSnapshot& bone;
-    const volume::BoneSnapshot* guide = nullptr;  ///< null: none
+    const PlacedSolid* guide = nullptr;  ///< null: none
 
-    Solids(const volume::BoneSnapshot& bone_, const volume::BoneSnapshot* guide_ = nullptr)
-        : bone(bone_), guide(guide_) {}
+    Solids(const volume::BoneSnapshot& bone_, const PlacedSolid* guide_ = nullptr) : bone(bone_), guide(guide_) {}
 };
 
 /// The balls of a blade: two rows of points on its faces near the teeth, which guide it in its kerf (thesis 6.2.2), and a

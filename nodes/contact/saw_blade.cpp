@@ -33,6 +33,7 @@ struct SawBlade {
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
     In<bool> seated{optional, "the guide is on the bone: until then the blade has no force; unconnected: true"};
+    In<Pose> guide_offset{optional, "of the seated guide from its plan: guide_seat.offset; unconnected: none", "m"};
     In<bool> release{optional, "while held, the bone is released: wire the clutch of the hand here"};
     In<Wrench> asked{optional,
                      "what device_output was asked for, as delay 1; with 'applied' teeth cut by the share of "
@@ -133,6 +134,7 @@ struct SawBlade {
             guide_body_ = std::make_unique<volume::BoneEditor>(
                 body.distance, body.density, volume::BoneEditorOptions{.max_dirty = 1, .max_versions = 1});
             guide_now_ = guide_body_->current();
+            guide_solid_ = {.solid = &guide_now_, .pose = {}};
         }
         held = Pose{};
         waits_.attach(setup);
@@ -156,10 +158,12 @@ struct SawBlade {
             .rendered = rendered_share(asked, applied),
             .release =
                 pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get()) || !is_seated()};
+        if (guide_offset.connected && is_valid(guide_offset.get()))
+            guide_solid_ = {.solid = &guide_now_, .pose = guide_offset.get()};
         const Pose at = guided(drive);
-        const saw::SawContact now = blade_->step(bone.get(), at, drive, law_, guide_body_ ? &guide_now_ : nullptr);
+        const saw::SawContact now = blade_->step(bone.get(), at, drive, law_, guide_body_ ? &guide_solid_ : nullptr);
         // 'device_scale' can be changed while the patch runs.
-        wrench = hold_.on_hand(now.wrench) * std::min<double>(device_scale, max_scale_);
+        wrench = on_hand(now.wrench) * std::min<double>(device_scale, max_scale_);
         // While the hand holds the guide it holds no saw, so the blade injures nothing.
         is_in_hand_ = is_in_hand_ || (is_seated() && now.state == saw::HoldState::engaged);
         held = is_in_hand_ ? at : Pose{at.position - at.rotate(Vec3(0.0, laid_aside, 0.0)), at.orientation};
@@ -207,9 +211,16 @@ private:
         const bool is_held = is_seated() && !drive.release && last_state_ == saw::HoldState::engaged;
         const Pose at =
             hold_.follow(is_held ? std::span<const saw::GuideSlot>(guide->slots) : std::span<const saw::GuideSlot>(),
-                         pose.get(), drive.dt);
+                         guide_solid_.back * pose.get(), drive.dt);
         max_guide_force_ = std::max(max_guide_force_, hold_.force());
-        return at;
+        return guide_solid_.pose * at;
+    }
+
+    Wrench on_hand(const Wrench& on_blade) const noexcept {
+        if (!guide_body_) return on_blade;
+        const Pose &to = guide_solid_.pose, &back = guide_solid_.back;
+        const Wrench w = hold_.on_hand({back.rotate(on_blade.force), back.rotate(on_blade.torque)});
+        return {to.rotate(w.force), to.rotate(w.torque)};
     }
 
     std::optional<saw::SawBlade> blade_;
@@ -221,6 +232,7 @@ private:
     saw::SlotHold hold_;
     std::unique_ptr<volume::BoneEditor> guide_body_;  // never edited
     volume::BoneSnapshot guide_now_;
+    saw::PlacedSolid guide_solid_;
     static constexpr double laid_aside = 0.1;  // m
     Pose last_pose_;
     bool is_in_hand_ = true;
@@ -229,10 +241,10 @@ private:
     saw::HoldState last_state_ = saw::HoldState::engaged;
 };
 
-TACTUS_NODE(SawBlade, pose, bone, running, strokes, seated, release, asked, applied, wrench, held, slot, load,
-            stroke_force, feed, teeth, passing, penetration, in_contact, waiting, rendered, front, stiffness, guide,
-            guide_stiffness, device_scale, threshold, stroke_rate, sharpness, sagittal, length, height, thickness, kerf,
-            stroke, tooth_pitch)
+TACTUS_NODE(SawBlade, pose, bone, running, strokes, seated, guide_offset, release, asked, applied, wrench, held, slot,
+            load, stroke_force, feed, teeth, passing, penetration, in_contact, waiting, rendered, front, stiffness,
+            guide, guide_stiffness, device_scale, threshold, stroke_rate, sharpness, sagittal, length, height,
+            thickness, kerf, stroke, tooth_pitch)
 TACTUS_VISUALS(SawBlade)
 
 }  // namespace tactus::nodes

@@ -17,8 +17,10 @@ namespace tactus::nodes {
 struct GuideSeat {
     static constexpr auto about =
         "Seats a held cutting guide on the bone. Within 'reach' and 'reach_angle' of its seat the guide is pulled to "
-        "it; after 'dwell' within both tolerances it is fixed there and the hand is free for the saw. Wire 'held', "
-        "'grip', 'target', 'near', 'holding' and 'strength' to a coupling, and the coupling's pose back as delay 1. "
+        "it; after 'dwell' within both tolerances it is fixed where it is and the hand is free for the saw: what is "
+        "left of "
+        "the way to the seat moves its slots, by 'offset'. Wire 'held', 'grip', 'target', 'near', 'holding' and "
+        "'strength' to a coupling, and the coupling's pose back as delay 1. "
         "Without a guide, 'seated' is always true.";
 
     In<Pose> hand{"pose of the hand in the scene: plan_frame.placed", "m"};
@@ -33,6 +35,7 @@ struct GuideSeat {
     Out<bool> holding{"the hand holds the guide"};
     Out<double> strength{"share of the coupling's force that the hand feels, 0 to 1"};
     Out<bool> seated{"the guide is on the bone, and the hand free for the saw"};
+    Out<Pose> offset{"of the seated guide from its plan, for saw_blade.guide_offset; before that none", "m"};
     Out<double> distance{"of the guide from its seat", "m"};
     Out<double> angle{"between the guide and its seat", "rad"};
     Asset<training::Task> task{"the task"};
@@ -67,19 +70,19 @@ struct GuideSeat {
     void process(const Tick& tick) noexcept {
         const double dt = tick.elapsed_seconds();
         time_ += dt;
-        if (parts_ && !has_grip_ && is_valid(hand.get())) {
-            grip_ = Pose{hand->position, glm::normalize(hand->orientation)}.inverse() * start();
-            has_grip_ = true;
-        }
         if (parts_ && !seated_) {
-            if (place.get() >= 0.0 && is_valid(moved.get())) at_ = moved.get();
+            const bool is_known = place.get() >= 0.0 && is_valid(moved.get());
+            if (is_known) at_ = moved.get();
+            // Not the first sample of the hand: it may be what a wire between groups brings before any value.
+            if (is_known && !has_grip_ && is_valid(hand.get())) {
+                grip_ = Pose{hand->position, glm::normalize(hand->orientation)}.inverse() * at_;
+                has_grip_ = true;
+            }
             const bool is_there = away() < tolerance && turned() < angle_tolerance;
             near_s_ = is_there ? near_s_ + dt : 0.0;
             if (is_there && near_s_ >= dwell) {
                 seated_ = true;
                 seated_at_ = time_;
-                last_away_ = away(), last_turned_ = turned();
-                at_ = seat_;
             }
         }
         if (seated_) strength_ = std::max(0.0, strength_ - dt / fade);
@@ -90,8 +93,8 @@ struct GuideSeat {
         if (!parts_) return;
         report.set("guide", "seated", seated_ ? 1.0 : 0.0);
         report.set("guide", "seated_at_s", seated_at_);
-        report.set("guide", "distance_mm", (seated_ ? last_away_ : away()) / mm);
-        report.set("guide", "angle_deg", (seated_ ? last_turned_ : turned()) / degree);
+        report.set("guide", "distance_mm", away() / mm);
+        report.set("guide", "angle_deg", turned() / degree);
     }
 
 private:
@@ -112,6 +115,7 @@ private:
         strength = strength_;
         held = parts_ && (!seated_ || strength_ > 0.0) ? 1.0 : -1.0;
         seated = seated_;
+        offset = seated_ && parts_ ? at_ * seat_.inverse() : Pose{};
         distance = parts_ ? away() : 0.0;
         angle = parts_ ? turned() : 0.0;
     }
@@ -120,10 +124,9 @@ private:
     Pose seat_, at_, grip_;
     bool has_grip_ = false, seated_ = false;
     double strength_ = 0.0, near_s_ = 0.0, time_ = 0.0, seated_at_ = 0.0;  // share, s
-    double last_away_ = 0.0, last_turned_ = 0.0;  // m, rad
 };
 
-TACTUS_NODE(GuideSeat, hand, moved, place, body, pose, held, grip, target, near, holding, strength, seated, distance,
-            angle, task, lift, spacing, reach, reach_angle, tolerance, angle_tolerance, dwell, fade)
+TACTUS_NODE(GuideSeat, hand, moved, place, body, pose, held, grip, target, near, holding, strength, seated, offset,
+            distance, angle, task, lift, spacing, reach, reach_angle, tolerance, angle_tolerance, dwell, fade)
 
 }  // namespace tactus::nodes

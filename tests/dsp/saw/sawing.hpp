@@ -78,7 +78,8 @@ struct Sawing {
     }
 
     saw::SawContact step(const Pose& pose) {
-        const saw::SawContact contact = blade.step(read, pose, drive, law, guide);
+        const saw::PlacedSolid placed{.solid = guide, .pose = {}};
+        const saw::SawContact contact = blade.step(read, pose, drive, law, guide ? &placed : nullptr);
         carve::CutFront front;
         blade.teeth().fill(front, pose, drive.running);
         path.push_back(front);

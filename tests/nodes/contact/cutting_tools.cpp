@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What saw_blade and burr report beside their forces.
+#include "dsp/core/rotation.hpp"
 #include "dsp/volume/bricks.hpp"
+#include "graph/node/task_asset.hpp"
 #include "tests/dsp/saw/sawing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -60,6 +64,67 @@ TEST_CASE("a tool cuts by the share of its force that the device was given") {
             CHECK(node.last<double>("rendered") == Approx(share));
             CHECK((*std::ranges::max_element(feed) > 0.0) == (share > 0.0));
         }
+}
+
+TEST_CASE("a guide that is not quite on its seat has its slots and its walls where it is") {
+    auto task = std::make_shared<training::Task>();
+    // Walls of 8 mm over a slot of 1.5 mm: n = y, from z = 0 to 15 mm.
+    const BoneBox box{.low = {-12e-3, -8e-3, 0.0}, .high = {12e-3, 8e-3, 15e-3}, .voxel = 0.4e-3};
+    const auto solid = bone_where(box, [&](const Vec3& p) {
+        const Vec3 q = glm::max(box.low - p, p - box.high);
+        const double wall = glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+        return std::max(wall, 0.75e-3 - std::abs(p.y));
+    });
+    auto body = std::make_shared<bone::Bone>();
+    body->distance = volume::to_grid(solid->current());
+    body->density = body->distance;
+    task->guide = training::GuideFile{"guide.vdb", {0.0, 0.0, 1.0}, 1};
+    task->guide_body = std::move(body);
+    saw::GuideSlot slot;
+    slot.frame = {Vec3(0.0), teeth_down};
+    slot.low = -12e-3, slot.high = 12e-3, slot.top = -15e-3, slot.bottom = 0.0, slot.wall = -0.75e-3;
+    slot.other_wall = 0.75e-3;
+    task->slots = {slot};
+    const auto bone = bone_block({.low = {0.5, 0.0, 0.0}, .high = {0.51, 0.01, 0.01}});
+    const Pose offset{Vec3(1.5e-3, 1.0e-3, -0.4e-3), rotation_by(Vec3(0.02, -0.01, 0.03))};
+    const auto run = [&](const Pose& at, const std::function<Pose(std::int64_t)>& hand, auto&& judge) {
+        NodeHarness node("saw_blade", servo);
+        node.disconnect_optional();
+        node.asset("guide", std::shared_ptr<const training::Task>(task));
+        node.set("length", "10 mm").set("height", "40 mm");
+        node.feed<Pose>("pose", [&](std::int64_t k) { return at * hand(k); }).feed("bone", bone->current());
+        node.connect("guide_offset").feed<Pose>("guide_offset", [&](std::int64_t) { return at; });
+        node.prepare();
+        node.run(400);
+        judge(node);
+    };
+    // Into the slot and against a wall of it; and beside the slot, down on the guide.
+    const auto into = [](std::int64_t k) {
+        const double t = std::min(1.0, static_cast<double>(k) / 200.0);
+        return Pose{Vec3(0.0, 1.2e-3 * std::max(0.0, static_cast<double>(k) - 200.0) / 200.0, 18e-3 - 10e-3 * t),
+                    teeth_down};
+    };
+    const auto onto = [](std::int64_t k) {
+        return Pose{Vec3(0.0, 4e-3, 17e-3 - 3e-3 * static_cast<double>(k) / 400.0), teeth_down};
+    };
+    for (const auto& hand : {std::function<Pose(std::int64_t)>(into), std::function<Pose(std::int64_t)>(onto)}) {
+        Pose held;
+        Wrench wrench;
+        double in_slot = -1.0;
+        run({}, hand, [&](NodeHarness& node) {
+            held = node.last<Pose>("held");
+            wrench = node.last<Wrench>("wrench");
+            in_slot = node.last<double>("slot");
+        });
+        CHECK(glm::length(wrench.force) > 0.5);
+        run(offset, hand, [&](NodeHarness& node) {
+            CHECK(node.last<double>("slot") == in_slot);
+            CHECK(glm::length((offset * held).position - node.last<Pose>("held").position) < 1e-6);
+            CHECK(glm::length(offset.rotate(wrench.force) - node.last<Wrench>("wrench").force) <
+                  1e-3 * glm::length(wrench.force));
+            CHECK(glm::length(offset.rotate(wrench.torque) - node.last<Wrench>("wrench").torque) < 1e-5);
+        });
+    }
 }
 
 TEST_CASE("the forces on a device are scaled, and the forces that cut are not") {

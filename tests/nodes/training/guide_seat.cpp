@@ -70,7 +70,14 @@ TEST_CASE("a guide that is held at its seat is seated, and the force on the hand
     CHECK(node.last<bool>("seated"));
     CHECK_FALSE(node.last<bool>("holding"));
     CHECK(node.last<double>("strength") > 0.5);
-    CHECK(glm::length(node.last<Pose>("pose").position - seat.position) < 1e-12);
+    // What is left of the way to the seat stays, and moves the slots.
+    const Pose error = moved * seat.inverse();
+    CHECK(glm::length(node.last<Pose>("pose").position - moved.position) < 1e-12);
+    CHECK(glm::length(node.last<Pose>("offset").position - error.position) < 1e-12);
+    CHECK(glm::length(node.last<Pose>("offset").position) > 0.29 * mm);
+    CHECK(glm::length(rotation_between(error.orientation, node.last<Pose>("offset").orientation)) < 1e-12);
+    CHECK(node.last<double>("distance") == Approx(0.3 * mm));
+    CHECK(node.last<double>("angle") == Approx(0.5 * degree));
     node.run(100);
     CHECK(node.last<double>("strength") == 0.0);
     CHECK(node.last<double>("held") == -1.0);
@@ -78,6 +85,30 @@ TEST_CASE("a guide that is held at its seat is seated, and the force on the hand
     moved.position += Vec3(0.05);
     node.run(10);
     CHECK(node.last<bool>("seated"));
+    CHECK(glm::length(node.last<Pose>("offset").position - error.position) < 1e-12);
+}
+
+TEST_CASE("the grip of a guide is that of the hand when the scene has come through, not of its first sample") {
+    NodeHarness node("guide_seat", test::servo);
+    node.asset("task", with_guide());
+    // What a wire between groups brings before any value.
+    Pose hand;
+    double place = -1.0;
+    Pose moved;
+    node.feed<Pose>("hand", std::function<Pose(std::int64_t)>([&](std::int64_t) { return hand; }));
+    node.feed<Pose>("moved", std::function<Pose(std::int64_t)>([&](std::int64_t) { return moved; }));
+    node.feed<double>("place", std::function<double(std::int64_t)>([&](std::int64_t) { return place; }));
+    node.prepare();
+    node.run(2);
+    CHECK_FALSE(node.last<bool>("holding"));
+    hand = {Vec3(0.01, 0.02, 0.1), rotation_by(Vec3(0.3, 0.0, 0.0))};
+    moved = node.last<Pose>("pose");
+    place = 1.0;
+    node.run(2);
+    CHECK(node.last<bool>("holding"));
+    const Pose held = hand * node.last<Pose>("grip");
+    CHECK(glm::length(held.position - moved.position) < 1e-12);
+    CHECK(node.last<double>("distance") == Approx(20.0 * mm));
 }
 
 TEST_CASE("without a guide the hand has the saw at once") {
