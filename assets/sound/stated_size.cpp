@@ -24,6 +24,19 @@ std::uint64_t small_number(std::span<const char> bytes) {
     return number;
 }
 
+/// The end of the samples of an AIFF. The size of the whole is not used: writers state it wrongly by some bytes.
+std::optional<std::uint64_t> end_of_aiff(std::ifstream& file) {
+    std::uint64_t at = 12;
+    std::array<char, 8> chunk{};
+    while (file.seekg(static_cast<std::streamoff>(at)) && file.read(chunk.data(), chunk.size())) {
+        const std::uint64_t size = big_number(std::span(chunk).subspan(4));
+        at += chunk.size() + size;
+        if (std::string_view(chunk.data(), 4) == "SSND") return at;
+        at += size % 2;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> stated_size(const std::filesystem::path& path) {
@@ -32,7 +45,7 @@ std::optional<std::uint64_t> stated_size(const std::filesystem::path& path) {
     if (!file.read(head.data(), head.size())) return std::nullopt;
     const std::string_view mark(head.data(), 4), kind(head.data() + 8, 4);
     const std::span bytes(head);
-    if (mark == "FORM" && (kind == "AIFF" || kind == "AIFC")) return 8 + big_number(bytes.subspan(4, 4));
+    if (mark == "FORM" && (kind == "AIFF" || kind == "AIFC")) return end_of_aiff(file);
     if (mark == "riff") return small_number(bytes.subspan(16, 8));
     if (mark == ".snd" || mark == "dns.") {
         const auto number = mark == ".snd" ? big_number : small_number;

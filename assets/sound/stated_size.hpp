@@ -8,9 +8,9 @@
 
 namespace tactus::sound {
 
-/// Bytes that an AIFF, AIFC, AU or W64 states for its whole file; none for other formats and where the header leaves
-/// it open. libsndfile reads such files to their end without an error, however short they are. For waves see
-/// repaired_wave_header.
+/// Bytes that an AIFF, AIFC or AU states up to the end of its samples, a W64 for its whole file; none for other formats
+/// and where the header leaves it open. libsndfile reads such files to their end without an error, however short they are.
+/// For waves see repaired_wave_header.
 std::optional<std::uint64_t> stated_size(const std::filesystem::path& path);
 
 }  // namespace tactus::sound

@@ -182,6 +182,9 @@ TEST_CASE("an AIFF or AU that is cut is read to the cut with a note, and a chunk
         CHECK(note_of(name, whole).empty());
         CHECK_THAT(note_of(name, whole.substr(0, whole.size() - 300)), ContainsSubstring("cut short"));
     }
+    std::string longer = aiff;  // 8 bytes more in the header than there are
+    longer.replace(4, 4, number_of(aiff.size(), 4, true));
+    CHECK(note_of("b.aiff", longer).empty());
     const std::string wave = wave_of(format_piece(1, 1, 2, false), samples_of(2, 16, false));
     std::string unpadded = wave;
     unpadded.insert(12, "LIST" + number_of(3, 4, false) + "abc");
