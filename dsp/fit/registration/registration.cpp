@@ -250,14 +250,16 @@ std::vector<Registration> coarse_registrations(std::span<const contact::SurfaceP
     return found;
 }
 
-/// Compares poses by the distances of both surfaces.
+/// Compares poses by the distances of both surfaces: those of some points of each from all points of the other. A thinned
+/// target would add an error of its own, at edges as large as the difference between rivals.
 class PoseScore {
 public:
-    PoseScore(std::span<const contact::SurfacePoint> moving, std::span<const contact::SurfacePoint> fixed)
+    PoseScore(std::span<const contact::SurfacePoint> moving, std::span<const contact::SurfacePoint> fixed,
+              const RegistrationTarget& to_fixed)
         : moving_(thinned(moving, most)),
           fixed_(thinned(fixed, most)),
-          to_moving_(moving_),
-          to_fixed_(fixed_),
+          to_moving_(moving),
+          to_fixed_(to_fixed),
           gyration_(std::min(spread_of(moving).gyration, spread_of(fixed).gyration)),
           middle_(spread_of(moving).middle) {
         const double a = area_of(moving), b = area_of(fixed);
@@ -300,7 +302,7 @@ private:
             const Vec3 at = pose.apply(p.position);
             const std::size_t n = target.nearest(at);
             const Vec3 difference = at - target.position(n);
-            // To the plane of the nearest point, where that is as near as the points of a thinned surface are.
+            // To the plane of the nearest point, where that is near.
             const double plane = std::abs(glm::dot(difference, target.normal(n))), point = glm::length(difference);
             double d = point < limit ? plane : limit;
             if (glm::dot(pose.rotate(p.normal), target.normal(n)) < 0.0) d = limit;
@@ -311,7 +313,8 @@ private:
     }
 
     std::vector<contact::SurfacePoint> moving_, fixed_;
-    RegistrationTarget to_moving_, to_fixed_;
+    RegistrationTarget to_moving_;
+    const RegistrationTarget& to_fixed_;
     double gyration_;
     Vec3 middle_;
     bool counts_moving_ = true, counts_fixed_ = true;
@@ -336,7 +339,7 @@ JudgedRegistration search_registration(std::span<const contact::SurfacePoint> mo
     constexpr std::size_t refined = 4;  // poses
     constexpr double clearly_better = 0.75, as_good = 0.95;  // of a rival's score
     constexpr double comes_together = 0.6;  // of the limit of a distance
-    const PoseScore score(moving, fixed_points);
+    const PoseScore score(moving, fixed_points, fixed);
     std::vector<JudgedRegistration::Rival> coarse;
     for (const Registration& each : coarse_registrations(moving, fixed_points, fixed, settings))
         coarse.push_back({each.pose, score(each.pose)});
