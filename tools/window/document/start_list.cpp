@@ -90,7 +90,7 @@ FileKind kind_of_file(const fs::path& path) {
         {{".plan.json", FileKind::plan}, {".toml", FileKind::patch}, {".vdb", FileKind::bone},
          {".nrrd", FileKind::scan},      {".nhdr", FileKind::scan},  {".nii", FileKind::scan},
          {".nii.gz", FileKind::scan},    {".dcm", FileKind::scan},   {".zip", FileKind::scan},
-         {".inv3", FileKind::scan},      {".mha", FileKind::scan},   {".stl", FileKind::scan},
+         {".inv3", FileKind::scan},      {".hdr", FileKind::scan},   {".stl", FileKind::scan},
          {".ply", FileKind::scan},       {".obj", FileKind::scan},   {".wav", FileKind::sound},
          {".flac", FileKind::sound},     {".ogg", FileKind::sound},  {".aiff", FileKind::sound},
          {".aif", FileKind::sound},      {".mp3", FileKind::sound},  {".w64", FileKind::sound},

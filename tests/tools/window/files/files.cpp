@@ -158,6 +158,8 @@ TEST_CASE("the start page lists examples with titles, files that still are there
     CHECK(kind_of_file("x.plan.json") == FileKind::plan);
     CHECK(kind_of_file("x.TOML") == FileKind::patch);
     CHECK(kind_of_file("scan.nii.gz") == FileKind::scan);
+    CHECK(kind_of_file("SCAN.HDR") == FileKind::scan);
+    CHECK(kind_of_file("scan.mha") == FileKind::unknown);  // no reader has it
     CHECK(kind_of_file("x.wav") == FileKind::sound);
     CHECK(kind_of_file("x.xyz") == FileKind::unknown);
 }
