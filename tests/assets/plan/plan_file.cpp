@@ -70,7 +70,7 @@ plan::CasePlan eventful() {
     plan.alternatives.push_back({"other", plan.place()});
     plan.current = 1;
     plan::PlanStep mirror = meaning(plan::StepKind::mirror, {});
-    mirror.mirror = plan::MirrorTarget{"healthy.stl", 3, {0.0, 1.0, 0.0}, 0.1, any_pose(11), 1e-3};
+    mirror.mirror = plan::MirrorTarget{"healthy.stl", 3, false, {0.0, 1.0, 0.0}, 0.1, any_pose(11), 1e-3};
     plan::add_step(plan, mirror);
     plan.place() = fit::undone(plan.before(), plan.place());
     return plan;
