@@ -73,6 +73,7 @@ TEST_CASE("a body is taken and let go at any point without a jump in force") {
     grasp.feed<Pose>("hand", hand);
     grasp.feed("scene", coupled_scene());
     grasp.feed<bool>("trigger", [](std::int64_t k) { return k >= 100 && k < 900; });
+    grasp.disconnect("release");
     grasp.prepare();
     grasp.run(1200);
     const auto held = grasp.values<double>("held");
