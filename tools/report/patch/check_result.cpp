@@ -237,8 +237,8 @@ std::vector<std::string> sound_lines(const std::optional<CheckedSound>& sound) {
     if (!sound) return all;
     if (sound->hears)
         all.push_back(
-            fmt::format("sound input is delayed by {:.4g} ms (--audio-margin) and one callback, and as long as "
-                        "the card itself needs",
+            fmt::format("sound input is delayed by {:.4g} ms (--audio-margin) and one callback, and by "
+                        "the latency of the card",
                         sound->buffer_ms));
     if (sound->plays)
         all.push_back(fmt::format("a run adds the card's buffer, {:.4g} ms (--audio-margin) and one callback, and {}",

@@ -336,7 +336,7 @@ TEST_CASE("a card that cannot be heard offline, and a sensor that is not there, 
     CHECK_THAT(none.err, ContainsSubstring("--audio names none"));
     const Outcome checked = folder.tactus("check " + file);
     CHECK(checked.code == 0);
-    CHECK_THAT(checked.out, ContainsSubstring("what a card hears waits 10 ms (--audio-margin) and one callback"));
+    CHECK_THAT(checked.out, ContainsSubstring("sound input is delayed by 10 ms (--audio-margin) and one callback"));
     CHECK_THAT(checked.out, ContainsSubstring("a run adds the card's buffer, 10 ms (--audio-margin) and one callback"));
     const auto refused = [&](const std::string& from, const std::string& to) {
         std::string text = echo;
