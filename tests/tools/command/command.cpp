@@ -173,7 +173,7 @@ TEST_CASE("a folder that cannot be made or written is refused, and an import tha
 TEST_CASE("usage that makes no sense ends in exit code 2", "[slow]") {
     const Folder folder;
     for (const char* line :
-         {"", "frobnicate", "render", "render saw-training --out o --seconds -1",
+         {"frobnicate", "render", "render saw-training --out o --seconds -1",
           "render saw-training --out o --seconds 1 --block 0", "run no-such-patch --seconds 1", "nodes gainn"}) {
         INFO(line);
         CHECK(folder.tactus(line).code == 2);
