@@ -206,12 +206,13 @@ private:
     }
 
     /// Does the command at the port once. One that may change the force on a hand waits until the hand has released its
-    /// body: grasp then fades the last force, whatever the scene becomes.
+    /// body and its force has faded.
     void receive(const Tick& tick) noexcept {
         const double number = port.command_number;
         const bool is_new = number != received_ && number > 0.0;
         const std::optional<plan::PlanCommand> command = is_new ? plan::command_of(port.numbers()) : std::nullopt;
-        if (command && holding_ && may_be_felt(*command)) {
+        // Also while the force fades: the pull of a vessel would follow the scene meanwhile.
+        if (command && (holding_ || held() >= 0) && may_be_felt(*command)) {
             if (waits_since_ < 0) waits_since_ = tick.index;
             if (seconds((tick.index - waits_since_) * tick.period) < release_within_s) return;
             not_released_.tell();

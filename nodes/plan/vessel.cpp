@@ -98,8 +98,9 @@ struct Vessel {
         settings.material.stiffness = stiffness;
         settings.material.radius = course->median_radius();
         settings.pedicle = pedicle;
-        // On its way of some centimetres a shorter one would be stretched to many times its length: no vessel, but a spring. Its
-        // held points move by half a segment a substep: behind a fast hand they would lag, and give energy.
+        // On its way of some centimetres a shorter one would be stretched to many times its length: no vessel, but a spring. Held
+        // points move at most half a segment per substep; if it were shorter, they would lag behind a fast hand and give
+        // energy.
         if (pedicle > 0.0 && pedicle < min_pedicle)
             setup.fail("a pedicle of " + fmt::format("{:.3g}", pedicle * 1e3) +
                        " mm reaches no site; give at least 20 mm, or 0 mm for all of the vessel");

@@ -71,10 +71,11 @@ struct GuideSeat {
         const double dt = tick.elapsed_seconds();
         time_ += dt;
         if (parts_ && !seated_) {
-            const bool is_known = place.get() >= 0.0 && is_valid(moved.get());
-            if (is_known) at_ = moved.get();
+            const bool is_known = place.get() >= 0.0;
+            // The coupling has no pose of the guide before the hand holds it.
+            if (has_grip_ && is_known && is_valid(moved.get())) at_ = moved.get();
             // Not the first sample of the hand: it may be what a wire between groups brings before any value.
-            if (is_known && !has_grip_ && is_valid(hand.get())) {
+            if (!has_grip_ && is_known && is_valid(hand.get())) {
                 grip_ = Pose{hand->position, glm::normalize(hand->orientation)}.inverse() * at_;
                 has_grip_ = true;
             }

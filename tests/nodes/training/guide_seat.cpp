@@ -102,12 +102,15 @@ TEST_CASE("the grip of a guide is that of the hand when the scene has come throu
     node.run(2);
     CHECK_FALSE(node.last<bool>("holding"));
     hand = {Vec3(0.01, 0.02, 0.1), rotation_by(Vec3(0.3, 0.0, 0.0))};
-    moved = node.last<Pose>("pose");
+    const Pose there = node.last<Pose>("pose");
     place = 1.0;
-    node.run(2);
+    // A coupling that holds nothing yet has no pose of the guide: that of its output at the start.
+    node.run(1);
     CHECK(node.last<bool>("holding"));
+    moved = there;
+    node.run(1);
     const Pose held = hand * node.last<Pose>("grip");
-    CHECK(glm::length(held.position - moved.position) < 1e-12);
+    CHECK(glm::length(held.position - there.position) < 1e-12);
     CHECK(node.last<double>("distance") == Approx(20.0 * mm));
 }
 

@@ -72,7 +72,9 @@ private:
                 add("void-fit", fmt::format("{}: {}", name(n), fit_words(state_, n)), name(n),
                     state_.fits[static_cast<std::size_t>(n)]->partner, true);
         for (int n = 0; n < static_cast<int>(plan_.fragments.size()); ++n)
+            // Where nothing faces, the residual is a penetration, and the pieces are in contact.
             if (!state_.arrangement.is_hidden(n) && is_accepted(n) &&
+                !(state_.fits[static_cast<std::size_t>(n)]->penetration > 0.0) &&
                 state_.fits[static_cast<std::size_t>(n)]->rms > max_accepted_gap)
                 add("accepted-apart",
                     fmt::format("{} is accepted {:.1f} mm from {}: they are not in contact", name(n),

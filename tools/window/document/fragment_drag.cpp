@@ -73,7 +73,10 @@ Pose FragmentDrag::goal() noexcept {
         if (is_near != is_attracted_) has_arrived_ = false;
         is_attracted_ = is_near;
         if (is_near) return there;
-    } else is_attracted_ = false;
+    } else {
+        if (is_attracted_) has_arrived_ = false;
+        is_attracted_ = false;
+    }
     return wanted_;
 }
 

@@ -58,7 +58,7 @@ FitCandidate candidate_of(const plan::CasePlan& plan, const analysis::PlanMatchi
 
 bool is_same(const FitCandidate& a, const FitCandidate& b) {
     const Pose &p = a.step.pose, &q = b.step.pose;
-    return glm::length(p.position - q.position) < same_m &&
+    return a.step.partner == b.step.partner && glm::length(p.position - q.position) < same_m &&
            glm::length(rotation_between(p.orientation, q.orientation)) < same_rad;
 }
 

@@ -42,8 +42,9 @@ bool FragmentMover::take(int fragment, std::string* why) {
     const std::string& name = plan.fragments[static_cast<std::size_t>(fragment)].name;
     needs_bodies_ = true;
     if (parts_.size() != plan.fragments.size()) return refuse("the bones are still being loaded");
-    if (run_.is_holding() && run_.held_last() == fragment) return refuse(fmt::format("a hand holds {}", name));
     const fit::Arrangement now = plan::state_of(plan).arrangement;
+    if (run_.is_holding() && now.move_together(fragment, run_.held_last()))
+        return refuse(fmt::format("a hand holds {}, or one of its group", name));
     if (!now.can_move(fragment)) return refuse(fmt::format("{}, or one of its group, is locked", name));
     plan_ = run_.newest();
     left_at_.reset();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fragments of a plan as the mouse moves them: dragged in contact with the others, attracted by a fit, and shown at places
-// that are no step yet. The same with and without a run: only what is done at the end is a command. No user interface.
+// that are no step yet. The same with and without a run: a drag becomes one command, when it ends. No user interface.
 #pragma once
 
 #include "tools/window/document/case_run.hpp"

@@ -65,7 +65,7 @@ void PlanDocument::adopt(const std::shared_ptr<const plan::CasePlan>& newest) {
     plan::CasePlan merged = *newest;
     plan::merge(merged, *foreign_, &*foreign_base_);
     // A version that has all steps of the other program goes on from the merged plan.
-    if (merged.steps.size() == newest->steps.size()) {
+    if (plan::content_of(merged) == plan::content_of(*newest)) {
         foreign_.reset();
         return set(*newest);
     }
@@ -85,7 +85,8 @@ void PlanDocument::write(const plan::CasePlan& plan) const {
 void PlanDocument::remove_kept() noexcept {
     kept_.remove();
     std::error_code ignored;
-    for (const fs::path& file : std::exchange(contained_, {})) fs::remove(file, ignored);
+    for (const fs::path& file : std::exchange(contained_, {}))
+        if (!is_in_use(file)) fs::remove(file, ignored);
 }
 
 plan::MergedAlternatives PlanDocument::save() {

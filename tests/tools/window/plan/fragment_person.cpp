@@ -15,7 +15,7 @@ using namespace tactus::test;
 namespace fs = std::filesystem;
 
 TEST_CASE("a person drags fragments with the mouse, snaps, groups, undoes, saves and reopens a plan without a run",
-          "[display]") {
+          "[display][live]") {
     for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "drag");
         if (!walk.is_possible()) return;
