@@ -511,14 +511,15 @@ TEST_CASE("a thousand events a second make nobody late", "[live]") {
                     group->telemetry.lost_events;
         return late;
     };
-    // A machine that wakes threads late does so without events too: only a run beside a silent one on time counts.
-    bool was_judged = false;
+    // A machine that wakes threads late does so without events too: only a run beside a silent one on time counts, and one
+    // such pair is chance on a machine that is late now and then.
+    int judged = 0;
     for (int attempt = 0; attempt < 6; ++attempt) {
         if (late_ticks("1") == 0) return;
-        was_judged = late_ticks("1000000") == 0 || was_judged;
+        judged += late_ticks("1000000") == 0;
     }
-    if (!was_judged) return tactus::test::skip("the machine was too busy to keep silent groups on time");
-    FAIL("each of 6 runs with events was late, and a run without events was on time");
+    if (judged < 4) return tactus::test::skip("the machine was too busy to keep silent groups on time");
+    FAIL("each of 6 runs with events was late, and " << judged << " of 6 without events were on time");
 }
 
 }  // namespace tactus::test
