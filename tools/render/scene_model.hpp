@@ -337,6 +337,7 @@ private:
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
+    std::size_t fragment_count_ = 0;  ///< of a plan, that were seen
     bool is_making_ = false;  ///< a mesh is not complete
     bool is_waiting_ = false;  ///< something that the outline names was not seen
     int waits_ = 0;  ///< pictures since the outline changed

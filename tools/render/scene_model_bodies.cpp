@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::render {
 
@@ -153,6 +154,11 @@ void SceneModel::show_bodies() {
         const auto seen = observer_.latest<observe::SeenScene>(scene->port);
         is_waiting_ = is_waiting_ || !seen || seen->value.count == 0;
         if (!seen) continue;
+        if (!scene->plan.empty() && seen->value.count != std::exchange(fragment_count_, seen->value.count)) {
+            // The fragments of an opened plan appear one after another: the bounds are those of all.
+            is_fitting_ = true;
+            waits_ = 0;
+        }
         const std::unordered_set<std::uint64_t> of_others = shown_;
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];

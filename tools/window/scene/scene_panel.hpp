@@ -182,6 +182,7 @@ private:
     std::int64_t plan_version_ = -1, judged_version_ = -1;
     bool is_empty_ = true;
     bool is_aimed_ = false, needs_picture_ = true;
+    display::OrbitCamera fitted_;  ///< as the last fit left the camera
     bool was_drawn_ = false;
     double looked_at_ = -1.0, cost_s_ = 0.0;  ///< cost: time per picture, including the window
     std::int64_t pictures_ = 0;

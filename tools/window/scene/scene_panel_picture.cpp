@@ -55,8 +55,12 @@ void ScenePanel::render(int width, int height) {
     screens_.lay_out(sight_, width, height);
     const double aspect =
         static_cast<double>(width) / height * (sight_.mode_of(0) == display::StereoMode::side_by_side ? 0.5 : 1.0);
+    // More of the scene has come, and nobody has moved the view since it was fitted.
+    if (!model_->is_fitted() && camera.target == fitted_.target && camera.distance == fitted_.distance)
+        is_aimed_ = false;
     if (!is_aimed_ && !model_->bounds().empty()) {
         camera.fit(model_->bounds(), aspect);
+        fitted_ = camera;
         is_aimed_ = model_->is_fitted();
     }
     picture.clip = clip_plane();
