@@ -139,21 +139,18 @@ std::string_view name_of(FitVerdict verdict) {
 
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings,
                  double far) noexcept {
-    // Coarse voxels blur the relief, so that faces which do not belong together are more alike. At 1 mm, their score is up
-    // to 0.5, against 0.28 at 0.5 mm and below; faces that belong together have 0.65 and more, thin shafts from 0.42 on.
-    constexpr double fine = 0.25e-3, for_any = 0.8e3, for_fit = 1.2e3;  // m, of sigma; scores per m beyond that
-    const double blur = std::max(0.0, settings.sigma - fine), least = settings.least_score + for_any * blur;
+    const double min_score = settings.min_uncertain_score();
     // Unrelated surfaces cross each other: their nearby distances are spread evenly.
-    const bool is_within = quality.score >= least && quality.share >= settings.min_share &&
+    const bool is_within = quality.score >= min_score && quality.share >= settings.min_share &&
                            quality.rms <= settings.max_rms * settings.sigma;
-    const bool is_likely = quality.score >= std::max(Acceptance::likely_score, least) &&
+    const bool is_likely = quality.score >= std::max(Acceptance::likely_score, min_score) &&
                            quality.share >= settings.min_share && margin >= Acceptance::likely_margin &&
                            quality.rms <= Acceptance::likely_rms * settings.sigma;
     if (quality.overlap < settings.min_overlap || !(is_within || is_likely)) return FitVerdict::no_match;
     if (is_free) return FitVerdict::sliding;
     if (margin < settings.min_margin) return FitVerdict::ambiguous;
     if (quality.penetration > settings.max_penetration) return FitVerdict::blocked;
-    const bool is_sharp = quality.score >= settings.least_score + for_fit * blur;
+    const bool is_sharp = quality.score >= settings.min_fit_score();
     return is_within && is_sharp && far <= settings.max_far ? FitVerdict::fit : FitVerdict::uncertain;
 }
 

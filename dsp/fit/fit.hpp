@@ -11,6 +11,7 @@
 #include "dsp/fit/fit_energy.hpp"
 #include "dsp/fit/fit_precision.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -59,6 +60,15 @@ struct FitSettings {
     double max_far = Acceptance::max_far;  ///< m, at the far end: a less precise pose is uncertain
     double min_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
     double max_penetration = 0.5e-3;  ///< m
+
+    /// Minimum scores of an uncertain fit and of a fit. Coarse voxels blur the relief: unrelated faces score up to 0.5 at
+    /// 1 mm (0.28 at 0.5 mm and below); related ones score at least 0.65, or 0.42 for thin shafts.
+    double min_uncertain_score() const noexcept { return least_score + 0.8e3 * blur(); }
+    double min_fit_score() const noexcept { return least_score + 1.2e3 * blur(); }
+
+private:
+    /// m, of sigma, beyond that of voxels of 0.5 mm.
+    double blur() const noexcept { return std::max(0.0, sigma - 0.25e-3); }
 };
 
 /// Widens the scales for coarse scans, whose surfaces are no more precise than their voxels.

@@ -201,8 +201,8 @@ private:
         }
         const bool back = edge(undo, 4), on = edge(redo, 5);
         if ((back || on) && holding_) held_back_.tell();
-        else if (back) tell(give(tick, plan::UndoStep{}));
-        else if (on) tell(give(tick, plan::RedoStep{}));
+        else if (back) notify(give(tick, plan::UndoStep{}));
+        else if (on) notify(give(tick, plan::RedoStep{}));
     }
 
     /// Does the command at the port once. One that may change the force on a hand waits until the hand has released its
@@ -218,7 +218,7 @@ private:
             not_released_.tell();
         } else if (command) {
             const std::optional<Pose> in_hand = holding_ ? std::optional(now_->pose(last_)) : std::nullopt;
-            tell(give(tick, *command));
+            notify(give(tick, *command));
             // Where the hand is now is no step yet, and stays.
             if (in_hand && now_->move(last_, *in_hand)) bodies_->show_unit(*now_, last_);
         } else if (is_new) no_command_.tell();
@@ -252,7 +252,7 @@ private:
     }
 
     /// Why a command was not done.
-    void tell(plan::PlanHistory::Outcome outcome) noexcept {
+    void notify(plan::PlanHistory::Outcome outcome) noexcept {
         using enum plan::PlanHistory::Outcome;
         switch (outcome) {
             case done:

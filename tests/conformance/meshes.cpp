@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes: STL, PLY, OBJ, and formats that are not read.
 #include "tests/conformance/cases.hpp"
+#include "tests/support/box_faces.hpp"
 
 #include <fmt/format.h>
 
@@ -18,18 +19,7 @@ using Point = std::array<double, 3>;
 using Triangle = std::array<Point, 3>;
 using Triangles = std::vector<Triangle>;
 
-constexpr std::array<std::array<int, 3>, 12> box_faces{{{0, 2, 1},
-                                                        {1, 2, 3},
-                                                        {4, 5, 6},
-                                                        {5, 7, 6},
-                                                        {0, 1, 4},
-                                                        {1, 5, 4},
-                                                        {2, 6, 3},
-                                                        {3, 6, 7},
-                                                        {0, 4, 2},
-                                                        {2, 4, 6},
-                                                        {1, 3, 5},
-                                                        {3, 7, 5}}};
+using test::box_faces;
 
 Point corner(int n, double low = 0.0, double high = 20.0) {
     return {n & 1 ? high : low, n & 2 ? high : low, n & 4 ? high : low};

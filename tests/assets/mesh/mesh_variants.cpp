@@ -5,6 +5,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/box_faces.hpp"
 #include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
@@ -24,23 +25,11 @@ using Triangles = std::vector<std::array<Vec3, 3>>;
 
 /// A box with its faces outwards, or inwards.
 Triangles box_of(const Vec3& low, const Vec3& high, bool is_inwards = false) {
-    constexpr std::array<std::array<int, 3>, 12> faces{{{0, 2, 1},
-                                                        {1, 2, 3},
-                                                        {4, 5, 6},
-                                                        {5, 7, 6},
-                                                        {0, 1, 4},
-                                                        {1, 5, 4},
-                                                        {2, 6, 3},
-                                                        {3, 6, 7},
-                                                        {0, 4, 2},
-                                                        {2, 4, 6},
-                                                        {1, 3, 5},
-                                                        {3, 7, 5}}};
     const auto corner = [&](int n) {
         return Vec3(n & 1 ? high.x : low.x, n & 2 ? high.y : low.y, n & 4 ? high.z : low.z);
     };
     Triangles out;
-    for (const auto& f : faces)
+    for (const auto& f : test::box_faces)
         out.push_back(is_inwards ? std::array{corner(f[0]), corner(f[2]), corner(f[1])}
                                  : std::array{corner(f[0]), corner(f[1]), corner(f[2])});
     return out;

@@ -166,6 +166,10 @@ TEST_CASE("dsp: faces must be more alike to fit in voxels of 1 mm than in fine o
         return fit::judge(quality, false, 0.5, settings);
     };
     for (const double voxel : {0.35 * mm, 0.5 * mm}) CHECK(verdict_at(voxel, 0.4) == fit::FitVerdict::fit);
+    fit::FitSettings coarse;
+    fit::widen_for(coarse, Vec3(1.0 * mm));
+    CHECK(coarse.min_uncertain_score() == Approx(0.5));
+    CHECK(coarse.min_fit_score() == Approx(0.6));
     // Strangers reach 0.5 there.
     CHECK(verdict_at(1.0 * mm, 0.4) == fit::FitVerdict::no_match);
     CHECK(verdict_at(1.0 * mm, 0.55) == fit::FitVerdict::uncertain);

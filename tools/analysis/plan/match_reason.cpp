@@ -125,8 +125,8 @@ std::string correct_the_paint(const plan::CasePlan& plan, const PlanMatching& ma
 }
 
 std::string no_match(const fit::FitQuality& q, const fit::FitSettings& settings) {
-    if (q.score < settings.least_score)
-        return fmt::format("the faces do not match: the score is below {:.2f}", settings.least_score);
+    if (q.score < settings.min_uncertain_score())
+        return fmt::format("the faces do not match: the score is below {:.2f}", settings.min_uncertain_score());
     if (q.overlap < settings.min_overlap)
         return fmt::format("the faces lie on each other on less than {:.0f} mm², which any two surfaces do",
                            settings.min_overlap * 1e6);
