@@ -104,6 +104,16 @@ std::optional<ColumnUnit> parse_column_unit(std::string_view text) {
     }
 }
 
+namespace {
+
+std::string_view last_word(std::string_view text) {
+    text = trimmed(text);
+    const std::size_t blank = text.rfind(' ');
+    return blank == std::string_view::npos ? text : text.substr(blank + 1);
+}
+
+}  // namespace
+
 NamedColumn parse_column_name(std::string_view header) {
     header = trimmed(header);
     if (const auto split = split_bracket(header))
@@ -116,9 +126,14 @@ NamedColumn parse_column_name(std::string_view header) {
         if (const std::size_t at = header.rfind(between); at != std::string_view::npos && at > 0)
             if (std::optional<ColumnUnit> unit = parse_column_unit(header.substr(at + between.size())))
                 return {std::string(trimmed(header.substr(0, at))), std::move(unit)};
+    // "Velocity m/s": a blank before a unit that is a quotient.
+    const std::size_t blank = header.rfind(' ');
+    if (blank != std::string_view::npos && header.find('/', blank) != std::string_view::npos)
+        if (std::optional<ColumnUnit> unit = parse_column_unit(header.substr(blank + 1)))
+            return {std::string(trimmed(header.substr(0, blank))), std::move(unit)};
     // "t/s" and "a/(m/s²)": quantity over unit, as ISO 80000-1 writes it. "m/s" alone is a unit.
     if (const std::size_t at = header.find('/'); at != std::string_view::npos && at > 0 && !parse_column_unit(header) &&
-                                                 !parse_column_unit(header.substr(0, at)))
+                                                 !parse_column_unit(last_word(header.substr(0, at))))
         if (std::optional<ColumnUnit> unit = parse_column_unit(header.substr(at + 1)))
             return {std::string(trimmed(header.substr(0, at))), std::move(unit)};
     for (const std::string_view suffix : suffixes)

@@ -155,6 +155,10 @@ TEST_CASE("units and names are told apart") {
     CHECK(name("a in m/s2") == "a|m/s2");
     CHECK(name("t/s") == "t|s");
     CHECK(name("a/(m/s²)") == "a|m/s²");
+    CHECK(name("Velocity m/s") == "Velocity|m/s");
+    CHECK(name("Acceleration m/s^2") == "Acceleration|m/s^2");
+    CHECK(name("Gyro deg/s").find("|s") == std::string::npos);
+    CHECK(name("Force N/mm").find("|mm") == std::string::npos);
     CHECK(name("m/s^2") == "m/s^2|none");
     CHECK(name("left/right") == "left/right|none");
     CHECK(name("AI 1 (Channel 3)") == "AI 1 (Channel 3)|none");
