@@ -25,11 +25,11 @@ namespace tactus::nodes {
 struct CommandPort {
     Param command{as_trigger, "0", "0", "12",
                   "kind of a command from outside: 1 place, 2 settle, 3 join, 4 split, 5 lock, 6 hide, 7 show, 8 undo, "
-                  "9 redo, 10 go to an alternative, 11 drop one, 12 bring the one dropped last back; 0: none"};
-    Param command_first{as_trigger, "0", "-1", "1000000", "the fragment or the alternative that it means"};
+                  "9 redo, 10 go to an alternative, 11 drop an alternative, 12 restore the last dropped one; 0: none"};
+    Param command_first{as_trigger, "0", "-1", "1000000", "fragment or alternative"};
     Param command_second{as_trigger, "0", "-1", "1000000", "the partner of settle and join; -1: none"};
     Param command_switch{as_trigger, "0", "0", "2",
-                         "lock: 1 locks, 0 unlocks; settle: what vouches for the pose, 0 the fracture, 1 a surgeon's "
+                         "lock: 1 locks, 0 unlocks; settle: basis of the pose, 0 the fracture, 1 a surgeon's "
                          "eye, 2 the mirrored side"};
     Param command_x{as_trigger, "0 m", "-1000 m", "1000 m", "position of the fragment's file"};
     Param command_y{as_trigger, "0 m", "-1000 m", "1000 m", "the same"};
@@ -119,6 +119,8 @@ struct CaseScene {
         now_ = std::make_unique<fit::Arrangement>(history_->now());
         given_ = 0;
         received_ = 0.0;
+        arrived_.reset();
+        command_.reset();
         waits_since_ = -1;
         if (!file.value.empty()) {
             keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
@@ -208,13 +210,20 @@ private:
     /// Does the command at the port once. One that may change the force on a hand waits until the hand has released its
     /// body and its force has faded.
     void receive(const Tick& tick) noexcept {
-        const double number = port.command_number;
-        const bool is_new = number != received_ && number > 0.0;
-        const std::optional<plan::PlanCommand> command = is_new ? plan::command_of(port.numbers()) : std::nullopt;
+        // A command that waits is the one that came: the port may hold the next one by then.
+        if (!arrived_ && port.command_number != received_ && port.command_number > 0.0) {
+            arrived_ = port.command_number;
+            command_ = plan::command_of(port.numbers());
+        }
+        const bool is_new = arrived_.has_value();
+        const std::optional<plan::PlanCommand>& command = command_;
         // Also while the force fades: the pull of a vessel would follow the scene meanwhile.
-        if (command && (holding_ || held() >= 0) && may_be_felt(*command)) {
-            if (waits_since_ < 0) waits_since_ = tick.index;
-            if (seconds((tick.index - waits_since_) * tick.period) < release_within_s) return;
+        const bool fades = !holding_ && held() >= 0;
+        if (command && (holding_ || fades) && may_be_felt(*command)) {
+            if (waits_since_ < 0 || fades != waits_for_fade_) waits_since_ = tick.index;
+            waits_for_fade_ = fades;
+            const double longest = fades ? faded_within_s : release_within_s;
+            if (seconds((tick.index - waits_since_) * tick.period) < longest) return;
             not_released_.tell();
         } else if (command) {
             const std::optional<Pose> in_hand = holding_ ? std::optional(now_->pose(last_)) : std::nullopt;
@@ -222,7 +231,9 @@ private:
             // Where the hand is now is no step yet, and stays.
             if (in_hand && now_->move(last_, *in_hand)) bodies_->show_unit(*now_, last_);
         } else if (is_new) no_command_.tell();
-        if (is_new) received_ = number;
+        if (is_new) received_ = *arrived_;
+        arrived_.reset();
+        command_.reset();
         waits_since_ = -1;
     }
 
@@ -315,7 +326,11 @@ private:
     }
 
     static constexpr double release_within_s = 0.25;  // a patch without the wire to grasp never releases
+    static constexpr double faded_within_s = 10.5;  // more than the longest fade of grasp
     double received_ = 0.0;
+    std::optional<double> arrived_;  // number of the command that is done or waits
+    std::optional<plan::PlanCommand> command_;
+    bool waits_for_fade_ = false;
     std::int64_t waits_since_ = -1;  // tick from which on a command waits for the release; -1: none does
     std::unique_ptr<CaseBodies> bodies_;
     std::unique_ptr<fit::Arrangement> now_;  // with what the hand has done since the last step

@@ -342,6 +342,8 @@ TEST_CASE("a command that a hand may feel asks for its release and is done after
     CHECK(node.last<bool>("release"));
     CHECK(node.last<double>("received") == 1.0);
     CHECK(off(session.file_pose(1), beside) < 1e-9);
+    // What the port holds meanwhile is of another command.
+    node.set("command_x", "1 m");
     session.release = 0;
     node.run(5);
     CHECK_FALSE(node.last<bool>("release"));
