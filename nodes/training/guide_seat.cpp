@@ -79,7 +79,7 @@ struct GuideSeat {
                 grip_ = Pose{hand->position, glm::normalize(hand->orientation)}.inverse() * at_;
                 has_grip_ = true;
             }
-            const bool is_there = away() < tolerance && turned() < angle_tolerance;
+            const bool is_there = has_grip_ && away() < tolerance && turned() < angle_tolerance;
             near_s_ = is_there ? near_s_ + dt : 0.0;
             if (is_there && near_s_ >= dwell) {
                 seated_ = true;

@@ -114,6 +114,17 @@ TEST_CASE("the grip of a guide is that of the hand when the scene has come throu
     CHECK(node.last<double>("distance") == Approx(20.0 * mm));
 }
 
+TEST_CASE("a guide that nobody holds is not seated, even where it begins at its seat") {
+    NodeHarness node("guide_seat", test::servo);
+    node.asset("task", with_guide());
+    node.set("lift", "0 mm");
+    node.feed<Pose>("hand", Pose{}).feed<Pose>("moved", Pose{}).feed("place", -1.0);
+    node.prepare();
+    node.run(1000);
+    CHECK(node.last<double>("distance") < 1e-9);
+    CHECK_FALSE(node.last<bool>("seated"));
+}
+
 TEST_CASE("without a guide the hand has the saw at once") {
     NodeHarness node("guide_seat", test::servo);
     node.asset("task", std::make_shared<const training::Task>());
