@@ -164,9 +164,13 @@ int replay(const ReplayChoice& choice) {
                           comparison.compared_values(),
                           take.result.size(),
                           take.is_complete};
-    if (copy && verdict.differs())
-        fmt::print(stderr, "tactus: {} is not written, because the replay differs from the run\n",
-                   choice.record.string());
+    // With other files, or when nothing could be compared, the values may not be those of the run.
+    const bool is_of_run = verdict.is_equal_so_far() && changed.empty();
+    if (copy && !is_of_run)
+        fmt::print(stderr, "tactus: {} is not written, because {}\n", choice.record.string(),
+                   verdict.differs() ? "the replay differs from the run"
+                   : changed.empty() ? "the take has no values or hashes to compare the replay with"
+                                     : "a file has changed since the run");
     else if (copy) copy->finish();
     const double covered = engine.progress_seconds();
     if (choice.json) {
