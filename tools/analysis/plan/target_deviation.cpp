@@ -20,7 +20,7 @@ namespace {
 
 /// A target is a mesh, a bone file or a scan, as for 'plan mirror'.
 geometry::TriangleSurface target_surface(const std::filesystem::path& file) {
-    return is_mesh(file) ? surface_of_piece(file) : mesh::export_surface(bone_of_file(file).distance);
+    return is_mesh(file) ? surface_of_file(file, {}) : mesh::export_surface(bone_of_file(file).distance);
 }
 
 }  // namespace
