@@ -28,7 +28,7 @@ void FragmentMover::tend(const std::vector<std::shared_ptr<const nodes::BodyPart
     }
     attract();
     drag_->follow(follows_for);
-    show(drag_->now());
+    show(drag_->now(), drag_->fragment());
 }
 
 bool FragmentMover::take(int fragment, std::string* why) {
@@ -43,7 +43,8 @@ bool FragmentMover::take(int fragment, std::string* why) {
     needs_bodies_ = true;
     if (parts_.size() != plan.fragments.size()) return refuse("the bones are still being loaded");
     const fit::Arrangement now = plan::state_of(plan).arrangement;
-    if (run_.is_holding() && now.move_together(fragment, run_.held_last()))
+    const int held = run_.held_last();
+    if (run_.is_holding() && held >= 0 && now.move_together(fragment, held))
         return refuse(fmt::format("a hand holds {}, or one of its group", name));
     if (!now.can_move(fragment)) return refuse(fmt::format("{}, or one of its group, is locked", name));
     plan_ = run_.newest();
@@ -95,10 +96,10 @@ void FragmentMover::cancel() {
     show_plan();
 }
 
-void FragmentMover::show(const fit::Arrangement& now) {
+void FragmentMover::show(const fit::Arrangement& now, int fragment) {
     std::vector<std::optional<Pose>> poses;
     for (int n = 0; n < static_cast<int>(now.size()); ++n)
-        poses.push_back(drag_ && !now.move_together(drag_->fragment(), n) ? std::nullopt : std::optional(now.pose(n)));
+        poses.push_back(now.move_together(fragment, n) ? std::optional(now.pose(n)) : std::nullopt);
     poses_ = std::move(poses);
     ++version_;
 }
@@ -107,7 +108,7 @@ void FragmentMover::show_at(int fragment, const Pose& pose) {
     if (!run_.newest()) return;
     fit::Arrangement now = plan::state_of(*run_.newest()).arrangement;
     now.move(fragment, pose);
-    show(now);
+    show(now, fragment);
 }
 
 void FragmentMover::show_plan() {

@@ -51,7 +51,8 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    void show(const fit::Arrangement& now);
+    /// Overrides the poses of the fragment and of what moves with it.
+    void show(const fit::Arrangement& now, int fragment);
     void attract();
 
     Workbench& bench_;

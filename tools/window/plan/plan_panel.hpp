@@ -79,7 +79,8 @@ private:
     void put_back();
     void put_on_mirror();
     void accept();
-    bool can_place() const;
+    void follow_state();
+    bool can_place();
     bool has_mirror();
     void show_candidate();
     void end_candidates();
@@ -101,8 +102,9 @@ private:
     };
     analysis::Beside<Placing> placing_;
     std::shared_ptr<const plan::CasePlan> placing_of_;  ///< the plan as it was then
-    std::int64_t mirror_version_ = -1;
+    std::int64_t state_version_ = -1;  ///< of the plan that the next two are of
     bool has_mirror_ = false;
+    std::optional<fit::Arrangement> arrangement_;
     ScenePanel& scene_;
     PlanMap map_;
     PlanAlternatives alternatives_;

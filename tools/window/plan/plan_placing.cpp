@@ -19,16 +19,24 @@
 
 namespace tactus::window {
 
-bool PlanPanel::can_place() const {
-    return case_.can_give() && case_.plan() && scene_.chosen_places().size() == 1 && !mover_.is_dragging() &&
-           !fits_.is_searching() && !placing_.is_busy();
+void PlanPanel::follow_state() {
+    if (!case_.plan() || std::exchange(state_version_, case_.version()) == case_.version()) return;
+    const plan::PlanState state = plan::state_of(*case_.plan());
+    has_mirror_ = state.mirror.has_value();
+    arrangement_ = state.arrangement;
+}
+
+bool PlanPanel::can_place() {
+    follow_state();
+    const std::vector<int> chosen = scene_.chosen_places();
+    return case_.can_give() && case_.plan() && chosen.size() == 1 &&
+           chosen.front() < static_cast<int>(arrangement_->size()) && arrangement_->can_move(chosen.front()) &&
+           !mover_.is_dragging() && !fits_.is_searching() && !placing_.is_busy();
 }
 
 bool PlanPanel::has_mirror() {
-    if (!case_.plan()) return false;
-    if (std::exchange(mirror_version_, case_.version()) != case_.version())
-        has_mirror_ = plan::state_of(*case_.plan()).mirror.has_value();
-    return has_mirror_;
+    follow_state();
+    return case_.plan() && has_mirror_;
 }
 
 void PlanPanel::placing_buttons() {
