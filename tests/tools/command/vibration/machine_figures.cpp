@@ -159,7 +159,13 @@ TEST_CASE("response between two channels is that of the system, with H1 below an
     // 'equalise' accepts what it writes.
     CHECK(folder.tactus("equalise response.csv --band 50:800 --out e.toml").code == 0);
     const RecordOutcome text = folder.tactus("response hammer.wav --estimator hv");
-    CHECK(text.out.find("peaks with a coherence") != std::string::npos);
+    const std::size_t peaks = text.out.find("peaks with a coherence");
+    REQUIRE(peaks != std::string::npos);
+    CAPTURE(text.out);
+    // The table has the resonance.
+    const std::size_t head = text.out.find("frequency, Hz", peaks);
+    REQUIRE(head != std::string::npos);
+    CHECK(std::stod(text.out.substr(text.out.find('\n', head) + 1)) == Approx(frequency).margin(2.0));
     CHECK(folder.tactus("response hammer.wav --segment 131072").code == 2);  // one segment has a coherence of 1
     CHECK(folder.tactus("response hammer.wav --channel 1").code == 2);
 }

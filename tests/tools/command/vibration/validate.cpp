@@ -268,8 +268,8 @@ TEST_CASE("spectrum --report is one page of figures, lines and bands for all fil
     const fs::path page = folder.path / "page.html";
     REQUIRE(folder.tactus("spectrum " + (folder.path / "in").string() + " --report " + page.string()).code == 0);
     const std::string html = slurp(page);
-    for (const char* needed :
-         {"<!doctype html>", "a&amp;b.wav", "c.wav", "order 2", "fundamental", "third octave", "Methods"}) {
+    for (const char* needed : {"<!doctype html>", "a&amp;b.wav", "c.wav", "order 2", "<td>fundamental</td><td>233.0",
+                               "<td>fundamental</td><td>150.0", "third octave", "Methods"}) {
         INFO(needed);
         CHECK(html.find(needed) != std::string::npos);
     }
