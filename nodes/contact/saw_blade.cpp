@@ -135,6 +135,9 @@ struct SawBlade {
                 body.distance, body.density, volume::BoneEditorOptions{.max_dirty = 1, .max_versions = 1});
             guide_now_ = guide_body_->current();
             guide_solid_ = {.solid = &guide_now_, .pose = {}};
+            is_guide_placed_ = false;
+            if (guide_offset.connected && !seated.connected)
+                setup.fail("'guide_offset' is that of a seated guide; connect guide_seat.seated to 'seated', too");
         }
         held = Pose{};
         waits_.attach(setup);
@@ -158,8 +161,7 @@ struct SawBlade {
             .rendered = rendered_share(asked, applied),
             .release =
                 pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get()) || !is_seated()};
-        if (guide_offset.connected && is_valid(guide_offset.get()))
-            guide_solid_ = {.solid = &guide_now_, .pose = guide_offset.get()};
+        place_guide();
         const Pose at = guided(drive);
         const saw::SawContact now = blade_->step(bone.get(), at, drive, law_, guide_body_ ? &guide_solid_ : nullptr);
         // 'device_scale' can be changed while the patch runs.
@@ -216,6 +218,17 @@ private:
         return guide_solid_.pose * at;
     }
 
+    /// A guide lies where it was when it was seated: walls that moved later would push the blade at once.
+    void place_guide() noexcept {
+        if (!guide_offset.connected) return;
+        if (!is_seated()) is_guide_placed_ = false;
+        else if (!is_guide_placed_ && is_valid(guide_offset.get())) {
+            is_guide_placed_ = true;
+            guide_solid_ = {.solid = &guide_now_,
+                            .pose = {guide_offset->position, glm::normalize(guide_offset->orientation)}};
+        }
+    }
+
     Wrench on_hand(const Wrench& on_blade) const noexcept {
         if (!guide_body_) return on_blade;
         const Pose &to = guide_solid_.pose, &back = guide_solid_.back;
@@ -235,7 +248,7 @@ private:
     saw::PlacedSolid guide_solid_;
     static constexpr double laid_aside = 0.1;  // m
     Pose last_pose_;
-    bool is_in_hand_ = true;
+    bool is_in_hand_ = true, is_guide_placed_ = false;
     double max_guide_force_ = 0.0, max_scale_ = 1.0;
     Notice waits_{tool_waits}, released_{tool_released};
     saw::HoldState last_state_ = saw::HoldState::engaged;

@@ -93,7 +93,11 @@ TEST_CASE("a guide that is not quite on its seat has its slots and its walls whe
         node.asset("guide", std::shared_ptr<const training::Task>(task));
         node.set("length", "10 mm").set("height", "40 mm");
         node.feed<Pose>("pose", [&](std::int64_t k) { return at * hand(k); }).feed("bone", bone->current());
-        node.connect("guide_offset").feed<Pose>("guide_offset", [&](std::int64_t) { return at; });
+        // Later changes of the offset move no wall.
+        node.connect("guide_offset").feed<Pose>("guide_offset", [&](std::int64_t k) {
+            return k < 10 ? at : Pose{at.position + Vec3(0.0, 2e-3, 0.0), at.orientation};
+        });
+        node.connect("seated").feed("seated", true);
         node.prepare();
         node.run(400);
         judge(node);
