@@ -40,6 +40,8 @@ struct MirrorTarget {
     double plane_offset = 0.0;  ///< m: the plane is n·x = offset
     Pose pose;  ///< pose of the target in the frame of the case
     double residual = 0.0;  ///< m, median distance after registration
+
+    const char* words() const { return is_mirrored ? "mirrored healthy side" : "other bone of the same side"; }
 };
 
 /// Result of the fit that a step applied.

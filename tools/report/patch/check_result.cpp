@@ -217,7 +217,7 @@ const Fields<CheckedSchedule>& schedule_fields() {
             .number("response_us", "ends in", significant(3, "µs"), response)
             .flag("fits", "", [](const S& s) { return s.is_measured ? std::optional(s.group.fits()) : std::nullopt; })
             .text("", "verdict",
-                  [=](const S& s) { return response(s) && !s.group.fits() ? "TOO LATE" : std::string(); });
+                  [](const S& s) { return s.is_measured && !s.group.fits() ? "TOO LATE" : std::string(); });
     return all;
 }
 

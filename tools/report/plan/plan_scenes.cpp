@@ -67,10 +67,10 @@ void add_mirror_maps(const DrawnPlan& c, const fit::RegistrationTarget& healthy,
                 colours[3 * v + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis]);
         }
     }
-    out.emplace_back(Heading{"Distance from the healthy side"});
+    const std::string what = fmt::format("Distance from the {}", c.state.mirror->words());
+    out.emplace_back(Heading{what});
     out.emplace_back(colour_bar([](double share) { return render::map_colour(share * range, range); }, "0 mm",
-                                fmt::format("{:g} mm or more", range * 1e3),
-                                "Distance from the mirrored healthy side"));
+                                fmt::format("{:g} mm or more", range * 1e3), what));
     out.emplace_back(PictureGrid{{render::labelled_picture(meshes, Vec3(0.25, 1.0, -0.35), "from the front"),
                                   render::labelled_picture(meshes, Vec3(-0.35, -1.0, -0.3), "from behind")}});
 }

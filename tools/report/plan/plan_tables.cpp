@@ -113,11 +113,12 @@ void add_vessels(const DrawnPlan& c, std::vector<ReportBlock>& out) {
 
 void add_mirror(const DrawnPlan& c, std::vector<ReportBlock>& out) {
     if (!c.state.mirror) return;
-    out.emplace_back(Heading{"Mirror of the healthy side"});
-    out.emplace_back(
-        Paragraph{fmt::format("{}: median distance {:.2f} mm. This residual includes the asymmetry of the body; there "
-                              "is no ground truth to compare with.",
-                              c.state.mirror->file, c.state.mirror->residual * 1e3)});
+    const plan::MirrorTarget& target = *c.state.mirror;
+    out.emplace_back(Heading{fmt::format("Target: the {}", target.words())});
+    out.emplace_back(Paragraph{fmt::format(
+        "{}: median distance {:.2f} mm. This residual includes {}; there is no ground truth to compare with.",
+        target.file, target.residual * 1e3,
+        target.is_mirrored ? "the asymmetry of the body" : "the difference between two persons or two scans")});
 }
 
 void add_steps(const DrawnPlan& c, std::vector<ReportBlock>& out) {
