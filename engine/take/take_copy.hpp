@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take again, with every value of its replay. A run of hours need not record values that its timing log repeats to the
-// bit: they are computed when somebody wants to see them.
+// Copy of a take with the values of its replay. A run of hours need not record values that its timing log repeats to the
+// bit: they are computed on demand.
 #pragma once
 
 #include "engine/take/take_reader.hpp"

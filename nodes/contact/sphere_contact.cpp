@@ -50,7 +50,7 @@ struct SphereContact {
     }
 
 private:
-    /// The point of the surface to which the spring pulls is a god object that slides four times as fast as the hand moves: past
+    /// The point of the surface to which the spring pulls is a god object that slides at most four times as fast as the hand moves: past
     /// the centre the nearest point is on the other side at once, and the force would jump. It only ever comes nearer to the
     /// hand, so the force gives no energy. Turns `side_` by at most `angle`, rad; true if it arrives at `normal`.
     bool follows(const Vec3& normal, double angle) noexcept {

@@ -17,11 +17,11 @@ namespace tactus::nodes {
 struct GuideSeat {
     static constexpr auto about =
         "Seats a held cutting guide on the bone. Within 'reach' and 'reach_angle' of its seat the guide is pulled to "
-        "it; after 'dwell' within both tolerances it is fixed where it is and the hand is free for the saw: what is "
-        "left of "
-        "the way to the seat moves its slots, by 'offset'. Wire 'held', 'grip', 'target', 'near', 'holding' and "
-        "'strength' to a coupling, and the coupling's pose back as delay 1. "
-        "Without a guide, 'seated' is always true.";
+        "it; after 'dwell' within both tolerances it is fixed where it is, and the hand is free for the saw. 'offset' "
+        "is "
+        "its remaining deviation from the seat, by which saw_blade moves the slots. Wire 'held', 'grip', 'target', "
+        "'near', 'holding' and 'strength' to a coupling, and the coupling's pose back as delay 1. Without a guide, "
+        "'seated' is always true.";
 
     In<Pose> hand{"pose of the hand in the scene: plan_frame.placed", "m"};
     In<Pose> moved{"of the held guide: coupling.pose as delay 1", "m"};

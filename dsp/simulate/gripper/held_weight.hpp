@@ -50,7 +50,7 @@ struct HeldWeight {
         if (depth > 0.0) {
             constexpr double sink = 0.5e-3;  // m: penetration of the table under the weight's own load
             const double k = s.mass * s.gravity / sink;
-            // The damper comes in with the depth, and friction with the load: a weight that touches the table is not stopped in
+            // Damping grows with depth, and friction with the load: a weight that touches the table is not stopped in
             // one step, which the grip would pass on.
             const double load =
                 std::max(0.0, k * depth - 1.4 * std::sqrt(k * s.mass) * velocity.z * std::min(1.0, depth / sink));

@@ -66,7 +66,7 @@ const char* target_words(const MirrorChoice& choice) { return choice.same_side ?
 std::string doubt_words(const MirrorChoice& choice) {
     return fmt::format(
         "the {} lies more than {:.3g} mm away from half of '{}', so that it is no target: name the largest fragment "
-        "first, and check that {} is the same bone of {} side, or accept more with --max-residual; the plan is "
+        "first, and check that {} is the same bone of {} side, or raise --max-residual; the plan is "
         "unchanged",
         target_words(choice), choice.max_residual, choice.names[0], choice.healthy.string(),
         choice.same_side ? "the same" : "the other");
@@ -154,7 +154,8 @@ Action declare_plan_mirror(VerbOptions& verb) {
 
 Verb plan_mirror_verb() {
     return {"mirror",
-            "register the mirrored healthy side, or another bone, to a fragment, as a target; 1: it does not lie on it",
+            "register the mirrored healthy side, or another bone, to a fragment, as a target; 1: the target is too far "
+            "from the fragment",
             declare_plan_mirror};
 }
 

@@ -17,7 +17,7 @@ namespace tactus::window {
 
 namespace {
 
-// Two candidates beside one partner that are so near to each other are one.
+// Candidates with the same partner that lie this close together count as one.
 constexpr double same_m = 1e-3, same_rad = 0.03;
 
 /// From certain to impossible; equal ones by their score.
