@@ -37,8 +37,10 @@ constexpr std::size_t max_output = 256 << 20;  // bytes
     ::dup2(out.handle(), STDOUT_FILENO);
     ::dup2(err.handle(), STDERR_FILENO);
     if (folder.empty() || ::chdir(folder.c_str()) == 0) ::execvp(argv[0], argv);
-    const std::string why = fmt::format("{}: cannot be run: {}\n", argv[0], std::strerror(errno));
-    [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, why.data(), why.size());
+    // Between fork and exec nothing may allocate: another thread may have held the lock of the heap.
+    for (const char* part : {static_cast<const char*>(argv[0]), ": cannot be run: ", ::strerrordesc_np(errno), "\n"})
+        [[maybe_unused]]
+        const ssize_t ignored = ::write(STDERR_FILENO, part, std::strlen(part));
     ::_exit(127);
 }
 
