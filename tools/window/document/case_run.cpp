@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 namespace tactus::window {
@@ -67,6 +68,12 @@ std::vector<StepLine> step_lines(const plan::CasePlan& plan) {
 }
 
 CaseRun::~CaseRun() {
+    // An export that waits behind another study would be dropped.
+    if (study_.is_busy() && studied_ == Study::files) try {
+            study_.take();
+        } catch (const std::exception&) {
+            // The window that would show it is closed.
+        }
     if (observer_)
         for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
 }
