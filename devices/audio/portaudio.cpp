@@ -37,7 +37,7 @@ PaDeviceIndex default_input() {
     return Pa_GetDefaultInputDevice();
 }
 
-/// What a run wants of a card.
+/// Directions that a run uses of a card.
 struct Wanted {
     bool plays = true, hears = false;
 

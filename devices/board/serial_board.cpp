@@ -38,7 +38,7 @@ struct Settings {
     double max_torque = 0.1, max_force = 2.0;
 };
 
-/// For who has named a line that is none.
+/// Serial ports of this machine, for the error about a path that is not one.
 std::string lines_here() {
     std::string names;
     std::error_code failure;
@@ -78,7 +78,7 @@ public:
                                 "the right program?",
                                 settings_.port));
             if (!hello.empty()) port_.send(hello);
-            // Some boards start anew when their line is opened: asked again until they have.
+            // Some boards reset when the port is opened; repeat the request until they answer.
             for (int i = 0; i < 50 && protocol_->told().count == before; ++i) {
                 if (may_ask()) ask({}, false);
                 sleep_for(2 * ms);
@@ -104,7 +104,7 @@ public:
             publish(exchange, told);
         }
         const Vec3 force = gives_ ? to_mechanism(exchange.force().force) : Vec3(0.0);
-        // A board that is silent is where nobody knows: the Jacobian of its last place is not that of its place now.
+        // The pose of a silent board is unknown, and the Jacobian of its last pose no longer applies.
         const bool is_fresh = now - heard_ns_ < driver::Exchange::oldest_sample_ns;
         if (may_ask())
             ask(is_fresh ? limited(settings_.mechanism.torques(told.angle, force)) : std::array<double, 2>{}, is_fresh);
@@ -173,7 +173,7 @@ private:
         port_.send(protocol_->request(torque, run && gives_));
     }
 
-    /// A line that is never silent is told all the same: its board may hold a force.
+    /// Also sends when the port is never silent, because the board may hold a force.
     bool may_ask() const noexcept {
         const std::int64_t now = steady_ns();
         return protocol_->told().heard != asked_count_ ||

@@ -56,7 +56,7 @@ std::vector<FigurePoint> thinned(const std::vector<FigurePoint>& points) {
     return out;
 }
 
-/// Points apart from each other, in tenths of a pixel.
+/// Path data of distinct points, in tenths of a pixel.
 std::string curve_of(const std::vector<FigurePoint>& points) {
     std::string out;
     long x = 0, y = 0;

@@ -90,7 +90,7 @@ bool is_confirmed(std::string_view driver, const Opened& device) {
         for (const file::Json& entry : all[list])
             if (is_of(entry, driver, device)) return true;
     } catch (const Error&) {
-        // Nobody can tell: the cap stays.
+        // The list cannot be read: keep the cap.
     }
     return false;
 }

@@ -10,7 +10,7 @@ namespace tactus::driver {
 
 namespace {
 
-// Samples that arrive in a burst say nothing of the velocity: their stamps are those of the line.
+// Samples that arrive in a burst give no velocity, because their time stamps are those of the transmission.
 constexpr std::int64_t min_step_ns = 100'000, longest_step_ns = 50'000'000;
 
 void put(const Vec3& v, double (&into)[3]) noexcept {
@@ -66,7 +66,7 @@ void Exchange::store(const Reading& reading, std::int64_t now) noexcept {
     stored.counter = ++counter_;
     stored.at_ns = now;
     stored.buttons = reading.buttons;
-    // While the gate holds a force back, the engine is to let go and to come in anew.
+    // While the gate suppresses the force, the sample is invalid, so that the engine releases and re-engages.
     stored.is_valid = reading.is_valid && !gate_.holds() ? 1 : 0;
     sample_.write(stored);
     published_.store(counter_, std::memory_order_relaxed);

@@ -31,7 +31,7 @@ namespace {
 constexpr double usual_range = 900.0 * degree;  // of wheels whose driver does not say
 constexpr int max_reads = 8;  // a round; more is read in the next one
 constexpr std::int64_t longest_refusal_ns = 200'000'000;
-// A wheel whose torque nobody states is taken for the strongest one sold: none pushes harder than it is told.
+// If the torque is not given, assume the strongest wheel on the market: then no wheel exceeds the requested torque.
 constexpr double strongest_torque = 30.0;  // N m
 constexpr double usual_torque = 2.0;       // N m: what such a wheel is asked for at most
 
@@ -62,7 +62,7 @@ enum class Kind { other, joystick, wheel };
 Kind kind_of(EventSystem& system, int file, const std::string& path) {
     const Bits axes = Bits::of_kind(system, file, EV_ABS), keys = Bits::of_kind(system, file, EV_KEY);
     if (!Bits::of_kind(system, file, EV_FF)[FF_CONSTANT] || !axes[ABS_X]) return Kind::other;
-    // What only a wheel has: an angle from stop to stop, a gear lever, the axis of that name; or its maker says so.
+    // Only wheels have a range, a gear lever or a wheel axis; otherwise the device's name decides.
     if (!system.attribute(path, "range").empty() || axes[ABS_WHEEL] || keys[BTN_GEAR_DOWN]) return Kind::wheel;
     const std::string name = lower(name_of(system, file));
     for (const char* word : {"wheel", "racing", "driving", "formula"})
@@ -211,7 +211,7 @@ private:
 
     double steps() const { return static_cast<double>(axis_.maximum) - axis_.minimum; }
 
-    /// From the option, the driver in the kernel, or as most wheels have it; returns what is to be said of it.
+    /// From the option, the driver in the kernel, or as most wheels have it; returns a notice, or "".
     std::string find_range(const std::string& path) {
         range_ = settings_.range;
         if (range_ > 0.0) return fmt::format("range {:.0f} deg, by option", range_ / degree);
@@ -254,7 +254,7 @@ private:
         const auto begin = [&](std::uint16_t code, int value, const char* stated, double otherwise) {
             std::optional<std::uint16_t> before;
             if (!effects[code]) return before;
-            // Events cannot be asked what was set before.
+            // The event interface cannot read the previous value.
             before = strength_in(stated ? system_.attribute(path, stated) : "");
             if (!before) before = static_cast<std::uint16_t>(std::lround(0xFFFF * otherwise));
             if (!set(code, value)) throw Error(fmt::format("the wheel refused a setting: {}", std::strerror(errno)));

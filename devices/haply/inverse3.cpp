@@ -78,7 +78,7 @@ public:
         return opened;
     }
 
-    /// The service says one state for each text: it is asked again when it has answered, or seems to have lost a text.
+    /// The service answers each message with one state. Sends the next message after an answer, or when one seems lost.
     bool round(driver::Exchange& exchange) noexcept override {
         try {
             const std::int64_t now = steady_ns();
@@ -113,7 +113,7 @@ public:
         try {
             if (!device_.empty()) service_.send(force_text(device_, Vec3(0.0), key_, false));
         } catch (const std::exception&) {
-            // A service that hears nothing lets go by itself.
+            // The service releases the force when it receives nothing.
         }
         device_.clear();
         service_.close();

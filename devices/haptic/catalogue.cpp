@@ -140,7 +140,7 @@ std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const 
     if (!found.backend) return found.open(options, resolve);
     const double timeout = options.quantity("open_timeout", "10 s", "0.1 s", "600 s");
     driver::DeviceOptions how{.driver = found.name, .is_untested = found.is_untested};
-    // Before the process around it gives up: its text says which step hangs.
+    // Shorter than the limit of the surrounding process, because this error names the step that hangs.
     how.open_timeout = std::chrono::milliseconds(static_cast<std::int64_t>(900.0 * timeout));
     try {
         return open_backend(found, options, how);

@@ -109,7 +109,7 @@ private:
         rumbled_ns_ = now;
     }
 
-    /// What the gamepad says of itself now. What it does not say, as in a recording, is at rest.
+    /// Queries the current state. Values that the gamepad does not report, as in a recording, are at rest.
     void ask() {
         state_ = {};
         for (std::size_t i = 0; i < axis_codes.size(); ++i)
@@ -178,7 +178,7 @@ private:
     std::thread thread_;
 };
 
-/// Where the sticks want the hand: they give its speed.
+/// Target pose of the hand; the sticks control its velocity.
 struct Steered {
     const hosted::Seqlock<PadState>* from = nullptr;
     double speed = 0.1, turn = 1.5;

@@ -101,7 +101,7 @@ public:
     void commit(const Wrench& on_hand) noexcept override { force_.set(on_hand); }
 
 private:
-    /// Takes what the window said since the last tick.
+    /// Reads the target that the window sent since the last tick.
     void listen() noexcept {
         WantedHand wanted;
         std::uint64_t number = 0;
@@ -111,7 +111,7 @@ private:
         has_heard_ = true;
         buttons_ = static_cast<std::uint32_t>(wanted.buttons);
         if (!is_valid(wanted.pose) || glm::length(wanted.pose.position) > farthest_m) return;
-        // A window that only says that it is alive does not begin the way anew.
+        // An unchanged pose is only a sign of life and does not restart the motion.
         if (wanted.pose.position == told_.position && wanted.pose.orientation == told_.orientation) return;
         told_ = wanted.pose;
         intended_.go_to(wanted.pose, static_cast<double>(wanted.picture_ns) * 1e-9);

@@ -70,7 +70,7 @@ private:
         }
     }
 
-    /// Neither its control thread nor a tick was heard: it is stopped.
+    /// True if neither the control thread nor a tick of the engine showed a sign of life.
     bool is_engine_silent() const noexcept {
         const std::int64_t said = block_.engine_lives_ns.load(std::memory_order_acquire);
         return said != 0 && steady_ns() - std::max(said, loop_.heard_ns()) > longest_silence_ns;

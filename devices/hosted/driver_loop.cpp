@@ -154,8 +154,8 @@ void DriverLoop::tell_pull() noexcept {
     block_.pull.write(pack(hand));
 }
 
-/// Each drive of the engine once, since a line may be slow. An engine that is lost is told of by one that holds, again
-/// and again.
+/// Each drive of the engine once, since a line may be slow. If the engine is lost, a drive that
+/// holds is sent repeatedly.
 void DriverLoop::give_drive(std::int64_t now_ns) noexcept {
     std::uint64_t number = drive_number_;
     block_.drive.read(drive_, number);

@@ -79,7 +79,7 @@ void HostedDevice::fail(const std::string& message) const {
     throw Error(where_, fmt::format("{}: {}", owner_, message));
 }
 
-/// What the process says of itself, or how the system ended it.
+/// The reason that the process reported, or the signal that ended it.
 std::string HostedDevice::how_it_ended() const {
     if (block_->state.load(std::memory_order_acquire) == HostState::ended)
         if (const std::string reason = text_of(block_->reason, sizeof block_->reason); !reason.empty())
@@ -125,7 +125,7 @@ void HostedDevice::prepare(double period_s) {
     });
     heard_ns_ = steady_ns();
     block_->sample.read(newest_, number_);
-    // What bounds energy must know the whole delay.
+    // The energy bound needs the whole delay.
     info_.delay = own_delay_s_ + placement_.added_latency_s(period_s);
 }
 

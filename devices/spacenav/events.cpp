@@ -42,7 +42,7 @@ void EventReader::accept() noexcept {
         const std::uint32_t bit = 1u << event[1];
         state_.buttons = event[0] == 1 ? state_.buttons | bit : state_.buttons & ~bit;
     } else if (event[0] == 3) {
-        // Whose deflection and buttons these were is not said.
+        // The event does not name the mouse that changed, so reset all.
         state_.deflection = {};
         state_.buttons = 0;
     } else return;

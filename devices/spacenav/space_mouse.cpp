@@ -47,7 +47,7 @@ Vec3 turn_of(const CapState& cap) noexcept {
     return Vec3(-d[3], -d[5], -d[4]) / full_deflection;
 }
 
-/// Where the hand means to be, from the speeds that the cap says.
+/// Target pose of the hand, integrated from the velocities of the cap.
 struct Steered {
     Pose wanted;
     Twist twist;

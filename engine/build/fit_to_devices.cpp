@@ -39,7 +39,7 @@ constexpr double stable_share = 0.8;
 
 }  // namespace
 
-/// Whether the patch declares the device. It knows nothing of one that only the command line names
+/// True if the patch declares the device; false for one that only the command line names
 /// (`--set hand.device=touch`).
 bool GenerationBuilder::is_declared(const DeviceSlot& slot) {
     return std::ranges::find(plan().patch.devices, slot.name, &patch::PatchDevice::name) != plan().patch.devices.end();
@@ -61,7 +61,7 @@ void GenerationBuilder::fit_to_devices() {
     limit_stiffness();
 }
 
-/// A tool with a `device_scale` that nobody has set works with the whole range of hardware that the patch does not know:
+/// A tool with a `device_scale` that nobody has set uses the full range of hardware that the patch does not declare:
 /// the patch's largest force is then the device's.
 void GenerationBuilder::scale_forces() {
     for (const analyse::FeltSpring& spring : analyse::felt_springs(plan())) {

@@ -146,7 +146,7 @@ void GenerationBuilder::prepare() {
 void GenerationBuilder::prepare_node(std::size_t i) {
     if (made_->survived[i]) return;
     const compile::ScheduleNode& node = plan().nodes[i];
-    // A node reads its assets without a check: only their loader knows why one is missing.
+    // Nodes use their assets unchecked. Report a missing one here, where the loader's error is available.
     for (const AssetParam* asset : node.assets)
         if (!asset->name.empty() && !asset->loaded)
             throw Error(asset->where,

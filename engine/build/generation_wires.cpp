@@ -200,7 +200,7 @@ void GenerationBuilder::connect(const compile::ScheduleWire& wire) {
 }
 
 bool GenerationBuilder::is_same_wire(const run::LinkWire& old, const run::LinkWire& wire) const {
-    // Events that were on their way when their node was made anew have happened all the same.
+    // Events in transit stay valid when their node is rebuilt.
     const bool is_same_source =
         wire.source->type == &value::event ? old.source->type == &value::event : old.source == live(wire.source);
     return is_same_source && old.target == live(wire.target) && old.param == live(wire.param) && old.mode == wire.mode;

@@ -21,7 +21,7 @@ void add(std::atomic<std::uint64_t>& count, std::uint64_t more) noexcept {
 CardInput::CardInput(std::shared_ptr<audio::InputRing> ring, double rate, double margin_s)
     : ring_(std::move(ring)), rate_(rate), margin_(std::llround(margin_s * rate)) {}
 
-/// So that the end of the call comes a whole callback and the margin behind what the card had heard when it was due.
+/// Places the end of the call one callback plus the margin behind the newest sample that the card had when it was due.
 bool CardInput::place(const audio::InputRing::View& card, std::int64_t first, std::int64_t count,
                       std::int64_t due_ns) noexcept {
     const double since = static_cast<double>(due_ns - card.steady_ns) * 1e-9 * rate_;

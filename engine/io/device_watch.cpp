@@ -56,7 +56,7 @@ bool DeviceWatch::stand_in() noexcept {
 void DeviceWatch::run() noexcept {
     sched_param parameters{};
     parameters.sched_priority = priority;
-    // Refused for the groups as well then, which is told once.
+    // If this fails, it fails for the groups too, and they report it.
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
     std::int64_t next = steady_ns(), give_up = 0;
     for (;;) {

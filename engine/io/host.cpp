@@ -158,7 +158,7 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
     }
     slot->device->prepare(seconds(period_));
     slot->port.info = slot->device->info();
-    // A run opens it where the patch says; then the device states the whole delay by itself.
+    // In a run, the opened device reports its whole delay, including that of its process.
     if (describes_hardware_) slot->port.info.delay += hosted::added_latency_s(request, seconds(period_));
     slot->port.sample = slot->device->acquire(0.0);
     opening.reset();
@@ -182,7 +182,7 @@ RecordStream& EngineHost::record(const StreamFormat& wanted, const SourceLocatio
     if (files_opened_.contains(wanted.file))
         throw Error(where, fmt::format("two recordings would be written to '{}'", wanted.file));
     StreamFormat format = wanted;
-    // A recording that an edit begins anew leaves what was recorded before untouched.
+    // A recording restarted by an edit does not overwrite the earlier one.
     const std::filesystem::path name = wanted.file;
     for (int again = 2; files_before_.contains(format.file) || files_opened_.contains(format.file); ++again)
         format.file = fmt::format("{}-{}{}", name.stem().string(), again, name.extension().string());

@@ -94,7 +94,7 @@ SoundChannel& EngineHost::shared_channel(const StreamFormat& format, const Sound
 
 void EngineHost::choose_source(SoundHeard& made, const SoundPlace& place, Flicks period,
                                std::optional<std::vector<float>> instead) {
-    // The log has what was heard.
+    // In a replay, the input comes from the log.
     if (recorded_ || hears_from_log_ || describes_hardware_) return;
     const bool has_card = live_ && audio_.device != "file" && audio_.device != "none";
     if (!has_card && !instead)

@@ -21,7 +21,7 @@ void SoundCard::hear(int channel, std::int64_t first, float* into, std::size_t c
     input_->read(channel, first, into, count, due_ns);
     if (first == heard_) return;
     heard_ = first;
-    // Nodes write after all that is heard in a call. An edit may bring the first one, or take the last one away.
+    // Nodes write after the input of a call was read. An edit can add the first player or remove the last.
     if (std::exchange(is_played_, false)) return;
     static constexpr float silence[256] = {};
     const std::int64_t end = first + static_cast<std::int64_t>(count);
@@ -104,7 +104,7 @@ bool SoundCard::service(std::int64_t now_ns, Flicks reached, control::TrimmedClo
         if (clock) clock->trim(now_ns, 1.0, 0.0);
         return true;
     }
-    // A card whose node an edit took away has nothing to tell about the engine's time.
+    // A card whose node was removed by an edit no longer drives the engine's clock.
     const AudioStatistics statistics = sink_->statistics();
     if (statistics.frames_written != written_) written_ns_ = now_ns;
     written_ = statistics.frames_written;

@@ -102,7 +102,7 @@ int LiveDecisions::overdue(const build::DeviceSlot& slot, const std::vector<buil
 LinkReading LiveDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick,
                                 int frames) noexcept {
     const std::int64_t index = newest(link, producer, tick);
-    // The producer's end may still be set behind where it is by then: only when it is over is its last one known.
+    // The end of the producer can still move; its last activation is only known once it has ended.
     const std::int64_t last = producer.is_over() ? producer.done() - 1 : Link::unknown;
     const bool late = is_late(link, index, last, tick);
     if (late) log_.note(take::TimingKind::held_read, tick, {link.id, frames, index});

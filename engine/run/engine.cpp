@@ -15,7 +15,7 @@ namespace tactus::run {
 
 namespace {
 
-/// Over all that a patch says and a command line changed.
+/// Hash of the patch, including changes by the command line.
 std::uint64_t hash_of(const patch::Patch& patch) {
     Hash hash;
     hash.add_text(patch::bundle_text(patch));

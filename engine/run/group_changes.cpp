@@ -104,7 +104,7 @@ bool GroupRuntime::is_let_go() noexcept {
 }
 
 bool GroupRuntime::switch_if_due() noexcept {
-    // A group begins with its first program at the time that the plan says; only later ones are decided.
+    // The first program starts at the time in the schedule; later switches are decisions (decisions.hpp).
     const bool must_switch = program_ ? is_let_go() && decisions_->switches_to(*upcoming_, next_)
                                       : next_ * plan->period >= upcoming_->switch_time;
     if (must_switch) {

@@ -92,7 +92,7 @@ bool GroupRuntime::read_link(Link& link, const GroupRuntime& producer, int frame
     for (int from = 0; from < frames;) {
         const std::int64_t tick = next_ + from;
         const LinkReading reading = decisions_->read(link, producer, tick, frames - from);
-        // What comes too late for one part of a call is not looked for again in the next.
+        // Data that are late for one part of a call are not polled again for the next part.
         const auto part =
             reading.is_late ? frames - from : std::min<std::int64_t>(frames - from, link.window_end(tick) - tick);
         link.deliver_part(reading.index, tick, from, static_cast<int>(part));

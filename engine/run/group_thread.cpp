@@ -23,7 +23,7 @@ constexpr std::int64_t spin_ns = 80'000;
 constexpr std::int64_t spun_part = 4;
 constexpr std::int64_t poll_start_ns = 200'000;
 constexpr std::int64_t rest_ns = 1'000'000;  // well below the watchdog's limit
-// A group that sleeps for longer looks now and then whether the run pauses or has ended.
+// Longer sleeps are split, to check for a pause or the end of the run.
 constexpr std::int64_t longest_sleep_ns = 10'000'000;
 
 }  // namespace
@@ -43,7 +43,7 @@ void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line
         sleep_for(rest_ns);
     };
     while (pauses(group) && !is_over(group) && !group.is_forsaken()) rest();
-    // The clock is set before the pause ends; a reader that was unlucky looks again.
+    // The clock is set before the pause ends; a read that overlapped with the write is repeated.
     while (!is_over(group) && line.steady_ns == before) {
         line = parts_.time.clock.get(line);
         if (line.steady_ns == before) sleep_for(spin_ns);
@@ -52,7 +52,7 @@ void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line
         line = parts_.time.clock.get(line);
         return line.when(group.next() * group.plan->period);
     };
-    // Before the next pause, which it would sleep through, it looks again.
+    // Wake up in time to notice the next pause.
     while (!is_over(group) && !pauses(group) && !group.is_forsaken() && release_ns() - steady_ns() > 2 * rest_ns)
         rest();
     // The watchdog must not miss it until the first tick has computed its force.

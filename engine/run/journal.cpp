@@ -23,7 +23,7 @@ void Journal::drain(const std::vector<std::shared_ptr<GroupRuntime>>& groups) {
     // What each group had done before its ring is emptied: all up to there is in the log afterwards.
     std::vector<take::TakeWriter::Progress> progress;
     for (const auto& group : groups) {
-        // One that has ended said so in the log.
+        // The log already contains the end of this group.
         if (!group->log.ring) continue;
         const std::int64_t done = group->done();
         progress.push_back({group->index, done, done * group->plan->period});

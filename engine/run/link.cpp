@@ -10,7 +10,7 @@ namespace tactus::run {
 void Link::prepare(Flicks slack, CallLengths live, CallLengths here, std::int64_t first) {
     first_.store(first);
     settled_.store(continued == nullptr);
-    // Slot m is wanted until the consumer's next read; latency and the lengths of calls on both sides add to that.
+    // Slot m is in use until the consumer's next read; latency and the lengths of calls on both sides add to that.
     const auto needed = [&](const CallLengths& calls) {
         const Flicks reach = consumer_period * calls.consumer + latency + slack;
         return ceil_div(reach, producer_period) + 2 + 2 * static_cast<std::int64_t>(calls.producer);

@@ -70,7 +70,7 @@ public:
     };
     /// Fixes the depth of the rings and takes the outputs' present values as index −1. `slack` is how late, in flicks,
     /// the consumer may run before publications are dropped; `live` are the calls of a live run, `here` those of this one;
-    /// `first` the first index that will be published, `unknown` when the producer is to say it by `begin_at`.
+    /// `first` the first index that will be published, `unknown` if the producer sets it by `begin_at`.
     ///
     /// The depth is a multiple of that in a live run: two indices that share a slot then share one in the live run, too. So
     /// a repetition in longer calls has room wherever the live run had, also after publications that were dropped.

@@ -33,7 +33,7 @@ LiveRun::LiveRun(const LiveParts& parts, const LiveOptions& options)
 
 LiveRun::~LiveRun() { cancel_threads(); }
 
-/// The clock follows the first card that is there. When one is lost, all hands are let go of once.
+/// The clock follows the first available card. When a card is lost, all forces are released once.
 void LiveRun::service_cards() {
     bool follows = false;
     for (const auto& card : parts_.host.cards) {

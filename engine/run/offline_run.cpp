@@ -37,7 +37,7 @@ void OfflineRun::await_step(std::uint32_t seen) {
         const std::lock_guard lock(idle_lock_);
         if (steps_.load() != seen) return;
         if (std::exchange(idle_step_, seen) != seen) idle_ = 0;
-        // All have looked since the last change, and none found a group that is ready: none ever will.
+        // Every thread has searched since the last change and found no group ready: a deadlock.
         if (++idle_ == working_) throw Error(why_it_stands());
     }
     steps_.wait(seen, std::memory_order_acquire);

@@ -21,7 +21,7 @@ void ParamRamps::set(Param& param, ParamRamp* ramp, double value, std::int64_t t
     const bool is_gradual = ramp && length > 0 && ramp->newest_plan.load(std::memory_order_relaxed) >= plan;
     // A plan that took over since the change was given may have lowered the limit.
     value = std::min(value, param.max);
-    // The plan before may know another ramp of it, or the plan to come none.
+    // The previous schedule may define another ramp for this parameter, and the next one none.
     ParamRamp* const running = find(param);
     if (running && !(is_gradual && running == ramp)) remove(*running);
     if (!is_gradual) {

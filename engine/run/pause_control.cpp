@@ -8,7 +8,7 @@ namespace tactus::run {
 namespace {
 
 constexpr Flicks fade_time = flicks_per_second / 50;  // a fade takes 10 ms
-// From asking to the first tick that fades, and to the first that does not run: all groups must have heard of it.
+// Delay from the request to the first fading tick and to the first omitted tick; all groups must see it in time.
 constexpr Flicks pause_lead = flicks_per_second / 1000;
 constexpr Flicks stop_lead = flicks_per_second * 30 / 1000;
 
@@ -23,7 +23,7 @@ Pausing PauseControl::state() const {
     return all ? Pausing::stands : Pausing::fades;
 }
 
-/// The clock is set to go on from where time stands.
+/// Restarts the clock at the logical time of the pause.
 bool PauseControl::service(control::TrimmedClock& line) {
     PauseWindow& window = time_.window;
     if (wanted_ || window.end != PauseWindow::never || state() != Pausing::stands) return false;
@@ -37,7 +37,7 @@ bool PauseControl::service(control::TrimmedClock& line) {
 
 bool PauseControl::begin_if_wanted() noexcept {
     PauseWindow& window = time_.window;
-    // In this order: a pause that has just ended is not wanted.
+    // Check in this order: `wanted_` is false if a pause has just ended.
     if (window.stop != PauseWindow::never || window.end != PauseWindow::never || !wanted_) return false;
     const Flicks now = present_.now();
     window.fade = PauseWindow::never;
@@ -51,9 +51,9 @@ bool PauseControl::end() noexcept {
     PauseWindow& window = time_.window;
     if (window.end != PauseWindow::never) return false;
     const Flicks now = present_.now();
-    // Where time stands, nobody comes any further.
+    // During a pause no group advances beyond its start.
     window.end = std::min(now + stop_lead, window.stop.load());
-    // A pause fades by itself; what comes in anew after one is held off again.
+    // A pause includes a fade; forces that re-engage after it are suspended again.
     window.until = PauseWindow::never;
     if (window.stop == PauseWindow::never) window.fade = now + pause_lead;
     return true;

@@ -105,7 +105,7 @@ void Recorder::drain_journal(const std::vector<std::shared_ptr<GroupRuntime>>& g
     if (!journal_.is_used()) return;
     const std::lock_guard lock(journal_lock_);
     journal_.drain(groups);
-    // Nobody has asked for it yet.
+    // The take has not been requested yet.
     if (take_ && !was_recorded_ && take_->is_lost()) give_up(take_->loss());
 }
 

@@ -28,7 +28,7 @@ public:
     /// take was abandoned.
     void want(bool wanted);
     bool is_recording() const { return take_ && wants_ && !take_->is_lost(); }
-    /// True if the take is wanted.
+    /// True if a recording was requested.
     bool was_recorded() const { return was_recorded_; }
     /// Begins and ends recording. `is_building`: a plan is being built, which creates streams. `now`: logical time.
     void service(Timeline& timeline, bool is_building, Flicks now);

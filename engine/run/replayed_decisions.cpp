@@ -37,7 +37,7 @@ const TimingRecord* ReplayedDecisions::find_switch(std::int64_t plan, std::int64
 std::int64_t ReplayedDecisions::skip_from(std::int64_t tick) const noexcept {
     const TimingRecord* skip = find(TimingKind::skipped, 0, tick);
     if (!skip) return tick;
-    // A plan may have taken over before it was known that the activation would be left out.
+    // A schedule may have taken over before the activation was skipped.
     for (std::size_t i = first_; const TimingRecord* r = records_.at(i); ++i) {
         if (r == skip) break;
         if (r->kind == TimingKind::plan && r->tick == tick && r->value > switched_to_) return tick;
@@ -103,7 +103,7 @@ bool ReplayedDecisions::has_room(const std::vector<Link*>& links, std::int64_t t
 }
 
 bool ReplayedDecisions::may_begin(const std::vector<Link*>&, std::int64_t) const noexcept {
-    // Live, room is asked for when a call ends, and what others read meanwhile has made some.
+    // A live run checks for space when a call ends; reads in the meantime have made room.
     return true;
 }
 

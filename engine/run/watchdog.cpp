@@ -42,7 +42,7 @@ void Watchdog::watch(build::DeviceSlot& slot) {
 
 void Watchdog::forget_beyond(std::size_t count) {
     if (count >= watched()) return;
-    // Whoever lets go of all hands at this moment may look at these once more: their memory stays until the last moment.
+    // A thread that is releasing all forces may still read these slots, so their memory is kept until it has passed.
     const std::size_t had = count_.exchange(count, std::memory_order_acq_rel);
     const std::int64_t passes = twin_passes_.load(std::memory_order_acquire);
     sleep_for(2 * look_every_ns);

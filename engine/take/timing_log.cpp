@@ -178,7 +178,7 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
         fail(fmt::format("the timing log holds {} records, but {} were written; it cannot be replayed to the bit",
                          log.records, *log.written));
     if (!may_be_cut) fail("the timing log stops before the end of the run; it cannot be replayed to the bit");
-    // Each round of progress records names all groups; the last complete round says what they had reached.
+    // Each round of progress records names all groups; the last complete round is their final progress.
     log.cut = reached.empty() ? 0 : *std::ranges::min_element(reached);
     return log;
 }

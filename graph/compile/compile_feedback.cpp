@@ -76,7 +76,7 @@ private:
     int entered_ = 0;
 };
 
-/// Where in its group each node stands.
+/// Index of each node in its group.
 std::vector<int> places_of(const Schedule& plan) {
     std::vector<int> places(plan.nodes.size());
     for (const ScheduleGroup& group : plan.groups)
@@ -101,7 +101,7 @@ std::vector<GroupGraph> graphs_of(const Schedule& plan, const std::vector<int>& 
     return graphs;
 }
 
-/// The components one after the other, each before those it leads to; within one the nodes stand as before.
+/// Topological order of the components; the order of nodes within a component is kept.
 std::vector<int> order_of(const Components& components) {
     std::vector<int> order(components.of.size());
     std::iota(order.begin(), order.end(), 0);

@@ -33,7 +33,7 @@ std::string no_port(const ScheduleNode& node, const std::string& port, const std
     return fmt::format("no port '{}' on node '{}'{}", port, node.name, did_you_mean(port, candidates));
 }
 
-/// What all wires are looked up in.
+/// Lookup tables shared by all wires.
 struct WireContext {
     explicit WireContext(const Schedule& plan, const patch::Problems& problems_) : problems(problems_) {
         for (const ScheduleNode& node : plan.nodes) nodes.emplace(node.name, static_cast<int>(nodes.size()));
@@ -72,10 +72,10 @@ public:
         return std::move(wire_);
     }
 
-    /// What is wrong is that nothing says which type the wire carries: another slip may be the reason.
+    /// True if the only fault is that the type of the wire is undetermined; another error may be its cause.
     bool is_undecided() const { return is_undecided_; }
 
-    /// The input that the wire means, or null: a wire with a fault feeds it all the same, and one slip is said once.
+    /// The input that the wire names, or null. A faulty wire counts as connected, so that one mistake gives one error.
     Input* meant_input() {
         const auto found = context_.nodes.find(source_.to_node);
         if (found == context_.nodes.end()) return nullptr;
@@ -258,7 +258,7 @@ bool carries_stream(const ScheduleNode& node) {
 }  // namespace
 
 void resolve_wires(Schedule& plan, patch::Problems& problems) {
-    // Without every node there is nothing sound to say about the wires between them.
+    // Wires can only be checked if every node was made.
     for (const ScheduleNode& node : plan.nodes)
         if (!node.type || node.group < 0) return;
     WireContext context(plan, problems);
@@ -279,7 +279,7 @@ void resolve_wires(Schedule& plan, patch::Problems& problems) {
         for (const auto& [where, message] : undecided) problems.add(where, message);
     const bool wires_are_sound = problems.list.size() == known;
     for (ScheduleNode& node : plan.nodes) {
-        // A wire that is wrong leaves its input open: one slip, told once.
+        // A faulty wire leaves its input open; report only the wire.
         if (wires_are_sound) check_unconnected(node, problems);
         node.takes_blocks = carries_stream(node);
         if (node.takes_blocks) plan.groups[static_cast<std::size_t>(node.group)].has_audio = true;

@@ -15,7 +15,7 @@ struct Life {
     int last = for_good;
 };
 
-/// Where in its group each node stands; those of a cycle at its end, for they run several times in a call.
+/// Index of each node in its group. Nodes of a cycle come last in it, because they run several times per call.
 std::vector<int> last_places_of(const Schedule& plan) {
     std::vector<int> place(plan.nodes.size());
     for (const ScheduleGroup& group : plan.groups) {

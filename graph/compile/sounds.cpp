@@ -58,7 +58,7 @@ void check_sounds(const Schedule& plan, patch::Problems& problems) {
         const auto& [card, channel] = target ? *target : *source;
         const std::string of_card = card.empty() ? "of the sound card" : fmt::format("of card '{}'", card);
         if (!target) {
-            // Any number of nodes may hear one channel.
+            // Any number of nodes may read one channel.
         } else if (const auto [first, is_new] = channels.try_emplace({card, channel}, &node); !is_new)
             problems.add(node.where, fmt::format("node '{}' plays on channel {} {}, and so does '{}'", node.name,
                                                  channel, of_card, first->second->name));

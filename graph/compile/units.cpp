@@ -162,7 +162,7 @@ public:
         : plan_(plan), problems_(problems), stops_(plan.nodes.size(), false) {}
 
     void check() {
-        // What follows from inputs that disagree would be told again and again on its way.
+        // One conflict causes others downstream; stop after `most` of them.
         constexpr int most = 100;
         for (int told = 0; told < most; ++told) {
             find();

@@ -88,7 +88,7 @@ std::string part_of(const patch::Patch& patch, const std::set<std::string>& node
 
 std::set<std::string> set_of(std::span<const std::string> names) { return {names.begin(), names.end()}; }
 
-/// The path as it stands in the text, not as this folder sees it.
+/// Keeps relative paths as written instead of resolving them against `folder`.
 patch::Patch read_in(std::string_view text, const fs::path& folder) {
     patch::Problems ignored;
     return patch::read_patch(text, folder / "copy.toml", ignored);
@@ -235,7 +235,7 @@ SubPatch with_sub_patch(std::string_view text, std::span<const std::string> node
         else crossing.from = fmt::format("{}.{}", name, end_of(outputs, "outputs", wire.from_node, wire.from_port));
         wires.push_back(std::move(crossing));
     }
-    // Inside, the nodes stand as they stood; the sub-patch takes the place of the first of them.
+    // The nodes keep their positions inside; the sub-patch is placed where the first of them was.
     const patch::PatchWindow window = patch::window_of(text);
     const std::map<std::string, patch::PatchPlace> places = places_of(window, nodes);
     made.inner = with_colours_of(with_places(inner.result(), places), window, same_names(nodes));

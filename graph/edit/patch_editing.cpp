@@ -187,7 +187,7 @@ void Editing::move_to_lane(std::string_view node, std::string_view lane, bool is
     former.push_back(other);
     if (spans_.find(known)) drop(former);
     else if (const TomlEntry* entry = spans_.find(former)) {
-        // What stands in columns stays in them.
+        // Keep the alignment of columns.
         TextSpan span = entry->keys.back();
         const bool has_room = std::string_view(text_).substr(span.end).starts_with("  ");
         if (is_group && has_room) ++span.end;

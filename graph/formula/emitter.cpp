@@ -90,7 +90,7 @@ void Emitter::join_products() {
 
 Program Emitter::finish(const Operand& result) {
     join_products();
-    // All constants first: the registers of results stand behind them.
+    // Constants come first; the registers of results follow them.
     for (const Pending& p : pending_)
         for (std::size_t i = 0; i < p.count; ++i)
             if (p.operands[i].constant) constant_index(*p.operands[i].constant);

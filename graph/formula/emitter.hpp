@@ -22,7 +22,7 @@ struct Operand {
     bool is_constant() const { return constant.has_value(); }
 };
 
-/// Emits instructions. What is known is computed at once. Registers of results form a stack: operands must be used in
+/// Emits instructions. Constant subexpressions are folded. Registers of results form a stack: operands must be used in
 /// the order in which they were made, the last ones first.
 class Emitter {
 public:

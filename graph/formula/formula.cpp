@@ -308,7 +308,7 @@ private:
         return emit(function.operation, given, measure);
     }
 
-    /// Counts nested calls of this parser, which the machine's stack bears only so many of.
+    /// Limits the nesting depth, because each level uses the call stack.
     struct Depth {
         explicit Depth(Compiler& compiler) : compiler_(compiler) {
             if (++compiler_.depth_ > deepest) {

@@ -69,7 +69,7 @@ class Evaluator {
 public:
     explicit Evaluator(std::size_t variables) : may_fail(variables, false), variables_(variables) {}
 
-    /// Variables at some value of which a part of the formula is not finite. Nothing is known of the result there: NaN
+    /// Variables at some value of which a part of the formula is not finite. The result is undefined there: NaN
     /// passes through sums, is dropped by comparisons, and gives 0 in the end.
     std::vector<bool> may_fail;
 

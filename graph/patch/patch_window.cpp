@@ -134,7 +134,7 @@ PatchWindow window_of(std::string_view text) {
         const file::TomlTable root = file::parse_toml(text, "");
         if (const toml::node* window = root->get("window")) return read_window(*window, "", ignored);
     } catch (const Error&) {
-        // Whoever reads the patch says so.
+        // The error is reported where the patch is parsed.
     }
     return {};
 }

@@ -169,7 +169,7 @@ private:
                     patch.offered.push_back({node.name + '.' + end.name, prefix + inner.node, inner.name, end.where});
     }
 
-    /// Sets the parameters inside that a parameter of a sub-patch stands for. Its nodes begin at `first` in `patch`.
+    /// Sets the inner parameters that a parameter of a sub-patch controls. Its nodes begin at `first` in `patch`.
     void set(Patch& patch, std::size_t first, const FlatPart& part, const OptionText& given) {
         const FlatPart::Ends& parameters = FlatPart::find(part.parameters, given.name);
         for (const PatchEnd* parameter : parameters)

@@ -94,7 +94,7 @@ void share_own_symbols() {
     static_cast<void>(::dlerror());
 }
 
-/// The files that a path of the user stands for, sorted.
+/// Expands a path given by the user to plug-in files, sorted.
 std::vector<fs::path> files_of(const fs::path& path) {
     std::error_code failure;
     if (!fs::is_directory(path, failure)) return {fs::weakly_canonical(path)};

@@ -116,7 +116,7 @@ struct DeviceOutput {
         report.set("force", "granted_power_max_W", max_granted_);
         report.set("force", "granted_J", e.granted);
         report.set("force", "engaged_ticks", static_cast<double>(engaged_ticks_));
-        // Forces come on only after the patch has asked for almost none.
+        // Forces engage only after the patch has requested almost zero force.
         if (engaged_ticks_ == 0 && faults_ == 0 && s.max_force >= control::ForceLimits{}.engage_force)
             report.set("forces_never_engaged", name_, s.max_force);
         report.set("force", "fault", std::string(control::describe(last_fault_)));
@@ -168,7 +168,7 @@ private:
         else if (port_->late.comes_in()) limiter_.recover(control::LateReturn::ramp_s);
     }
 
-    /// A simulation goes on while forces are off: what it asks for then is not what the hand felt.
+    /// The simulation continues while forces are off; the requested force then differs from the rendered one.
     void note_felt(const Tick& tick, double force) noexcept {
         const double asked = glm::length(wrench.get().force);
         if (!(asked > control::ForceLimits{}.engage_force)) return;

@@ -13,7 +13,7 @@
 
 namespace tactus::nodes {
 
-/// What `parse` makes of a text; its errors stand where the text stands.
+/// Parses a text; errors refer to its place in the patch.
 template <class Parse>
 static auto read_text(const Setup& setup, const Text& text, Parse&& parse) {
     try {

@@ -170,7 +170,7 @@ private:
         return false;
     }
 
-    /// Whether an object stands only by the one that is moved, directly or through others: a fit to it would hold up
+    /// True if an object is placed only relative to the moved one, directly or through others. A fit to it would fix
     /// nothing.
     bool hangs_on(std::size_t other, std::size_t moving) const noexcept {
         int at = scene->objects[other].hangs_on;

@@ -143,7 +143,7 @@ struct Vessel {
         if (!is_held && (tick.index + phase_) % idle_ticks_ != 0) {
             wrench = Wrench{};
             if (ticks_ > 0) return;
-            // Its first turn is to come: what it says is of its site already.
+            // The first update is pending; outputs already refer to the site.
             site_ = where;
             tell(is_wanted);
             return;
@@ -209,7 +209,7 @@ private:
                    : -1;
     }
 
-    /// The pieces' poses, from the frame of their files. A pose that is none keeps the last one.
+    /// The pieces' poses, from the frame of their files. An invalid pose keeps the previous one.
     void follow(int place) noexcept {
         for (std::size_t n = 0; n < poses_.size() && n < scene->count; ++n) {
             const coupling::SceneObject& object = scene->objects[n];

@@ -39,7 +39,7 @@ struct Player {
     }
     void process(const Tick& tick) noexcept {
         if (trigger && !was_) {
-            // The one that has faded most makes room. What it still gave fades with the rest.
+            // The most faded voice is replaced; its last value fades out with `rest_`.
             std::rotate(old_.begin(), old_.end() - 1, old_.end());
             rest_ += next(old_.front());
             old_.front() = new_;
