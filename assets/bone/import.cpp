@@ -24,7 +24,7 @@ void describe(Bone& bone, const ImportOptions& options, const ImportSummary& fou
     if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
 }
 
-/// With jobs that look whether the bone is still wanted.
+/// Options whose jobs check for cancellation.
 ImportOptions may_stop(ImportOptions options) {
     options.run = stoppable(std::move(options.run));
     return options;

@@ -135,7 +135,7 @@ mesh::Mesh largest_bodies(const mesh::Mesh& mesh, const mesh::MeshTopology& topo
             continue;
         }
         if (is_hollow) ++hollows, hollow += std::abs(shell.volume);
-        // A body that alone looks inwards is turned.
+        // A single body whose faces point inwards is flipped.
         const bool is_turned = is_hollow ? shell.volume > 0.0 : shell.volume < 0.0;
         for (auto t : shell.triangles) {
             if (is_turned) std::swap(t[1], t[2]);

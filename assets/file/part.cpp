@@ -21,7 +21,7 @@ fs::path find_this_object() {
     Dl_info where;
     link_map* object = nullptr;
     const auto* self = reinterpret_cast<const void*>(&find_this_object);
-    // The loader knows the program itself by an empty name.
+    // The dynamic loader lists the program itself under an empty name.
     if (::dladdr1(self, &where, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0 && object && object->l_name &&
         *object->l_name)
         return fs::weakly_canonical(object->l_name);

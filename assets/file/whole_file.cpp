@@ -104,7 +104,7 @@ void write_beside(const std::filesystem::path& path, std::string_view bytes, Dis
     };
     std::FILE* file = std::fopen(part.c_str(), "wb");
     if (!file) fail(errno);
-    // Who may read and write the file that is replaced may do so with the new one.
+    // The new file keeps the permissions of the file that it replaces.
     struct stat old{};
     if (::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode))
         std::ignore = ::fchmod(::fileno(file), old.st_mode & 07777);

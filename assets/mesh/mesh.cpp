@@ -49,7 +49,7 @@ Mesh surface_of(const volume::Grid& distance) {
                  distance.at(i, j, z1) - distance.at(i, j, z0)) /
             (Vec3(x1 - x0, y1 - y0, z1 - z0) * distance.spacing);
         const double length = glm::length(slope);
-        // The gradient is the smoother one. In a wall as thin as its samples are apart it means nothing, or the other side.
+        // Prefer the gradient, which is smoother, except in walls one sample thick, where it is meaningless.
         if (glm::dot(slope, mesh.normals[n]) > 0.5 * length && length > 0.5) mesh.normals[n] = slope / length;
     }
     return mesh;

@@ -34,7 +34,7 @@ std::optional<std::vector<contact::SurfacePoint>> kept_points(const ResultKey& k
             }
         }
     } catch (const std::exception&) {
-        // Damaged or not ours: said below, and made again.
+        // Damaged or foreign: report it below and recompute.
     }
     note = fmt::format("{} is damaged or not of this surface; it is ignored and made again", file.string());
     return std::nullopt;

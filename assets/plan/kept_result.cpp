@@ -103,7 +103,7 @@ std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string
             }
         }
     } catch (const std::exception&) {
-        // Damaged or not ours: said below, and made again.
+        // Damaged or foreign: report it below and recompute.
     }
     note = fmt::format("{} is damaged or not a kept result; it is ignored and made again", file.string());
     return std::nullopt;
@@ -152,7 +152,7 @@ std::optional<std::string> kept_text(const ResultKey& key, std::string& note) {
             return text;
         }
     } catch (const std::exception&) {
-        // Damaged or not ours: said below, and made again.
+        // Damaged or foreign: report it below and recompute.
     }
     note = fmt::format("{} is damaged or not a kept result; it is ignored and made again", file.string());
     return std::nullopt;

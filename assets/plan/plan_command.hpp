@@ -84,7 +84,7 @@ void add_to(Hash& hash, const PlanCommand& command) noexcept;
 
 /// A command as numbers, as it passes through the parameters of a node: kind (place in the variant, from 1; 0: none), two
 /// places (fragments, or an alternative), a switch (locked; a FitBasis), position, orientation (w x y z), FitNumbers.
-/// SI units. What a kind does not use is 0.
+/// SI units. Numbers that a kind does not use are 0.
 inline constexpr std::size_t plan_command_numbers = 17;
 using PlanCommandNumbers = std::array<double, plan_command_numbers>;
 PlanCommandNumbers numbers_of(const PlanCommand& command) noexcept;

@@ -90,7 +90,7 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::st
     }
     if (!file) {
         const std::string_view why = sf_strerror(nullptr);
-        // What libsndfile says of headers without a rate, and of chunks that follow each other in no known order.
+        // libsndfile's error for headers without a rate, and for chunks in an unknown order.
         if (why.starts_with("Internal error")) fail("cannot be read as sound: its header is damaged");
         // libsndfile recognises neither the content nor the extension.
         if (why.starts_with("File does not exist")) fail("cannot be read as sound: not a sound file of a known format");

@@ -43,7 +43,7 @@ std::size_t row_at(const table::PackedColumn& times, double time) {
 ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesystem::path& path) {
     const auto rows = static_cast<double>(log.times.size());
     const double start = log.times.front(), span = log.times.back() - start;
-    // Each row stands for one step of time.
+    // Each row covers one time step.
     const double length = rows > 1.0 ? span * rows / (rows - 1.0) : 0.0;
     if (stretch.is_whole()) return {0.0, length, length};
     const ReadStretch read = stretch_within(stretch, length, length > 0.0 ? rows / length : 1.0, path);

@@ -74,8 +74,8 @@ constexpr char reserved[] = "JUNK";
 constexpr std::uint32_t reserved_bytes = 28;  // of the chunk ds64, without its table
 
 /// Makes RF64 of a WAV of `data_bytes` of samples, in place: the chunk ds64, which has the lengths, comes to the front, and the
-/// reserved chunk goes. libsndfile chooses the format when it opens a file, when its length is not known yet. False when
-/// the header is another one.
+/// reserved chunk goes. libsndfile chooses the format when it opens a file, before the length is known. Returns false
+/// for other headers.
 bool make_rf64(const std::filesystem::path& path, std::uint64_t data_bytes) {
     constexpr std::uint64_t in_ds64 = 0xFFFFFFFF;
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);

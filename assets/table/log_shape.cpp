@@ -249,8 +249,8 @@ private:
         return *alone;
     }
 
-    /// Rows such as 0,5 are one column with decimal commas when one name stands above and has a unit, or when what stands
-    /// before the comma is no time.
+    /// Rows such as 0,5 are one column with decimal commas if the header has one name with a unit, or if the
+    /// numbers before the comma are not times.
     void keep_single_column_with_commas() {
         if (table_.separator != ',' || table_.width != 2 || forced_) return;
         const std::size_t first = first_row();

@@ -108,7 +108,7 @@ private:
         return element;
     }
 
-    /// Each number stands in its channel, and once more in the chosen columns. `bytes`: of what is unpacked.
+    /// Each number is held twice: in its channel and in the chosen columns. `bytes`: of what is unpacked.
     void require_room(std::size_t bytes, std::size_t numbers) const {
         file::require_room(static_cast<double>(bytes_.size()) + static_cast<double>(bytes) +
                                16.0 * (static_cast<double>(held_) + static_cast<double>(numbers)),
@@ -312,7 +312,7 @@ private:
     }
 
     bool state_rate(const std::string& name, double rate) {
-        // Several rates are for several groups of channels, and nothing says which.
+        // Several rates belong to several groups of channels, but the file does not assign them.
         if (rate_ > 0.0 && std::abs(rate / rate_ - 1.0) > 1e-9) has_several_rates_ = true;
         rate_ = rate;
         recording_.rate_place = fmt::format("variable '{}'", name);

@@ -70,7 +70,7 @@ std::optional<TimeUnit> time_unit_of_word(std::string_view word) {
 std::optional<TimeUnit> time_unit_in_name(std::string_view name) {
     std::vector<std::string> words = words_of(name);
     const std::vector<std::string> small = words_of(lower(name));
-    // Capitals may also begin no words, "tImE_mS": what stands between other characters counts first.
+    // Capitals do not always begin words ("tImE_mS"): parts between other characters are tried first.
     words.insert(words.end(), small.begin(), small.end());
     for (std::size_t i = words.size(); i-- > 0;) {
         // "milli seconds"

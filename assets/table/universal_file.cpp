@@ -271,7 +271,7 @@ private:
         throw Error(SourceLocation{file_, line, 1}, message);
     }
 
-    /// Each number stands in its channel, and once more in the chosen columns.
+    /// Each number is held twice: in its channel and in the chosen columns.
     void require_room(std::size_t numbers) const {
         file::require_room(static_cast<double>(bytes_.size()) + 16.0 * static_cast<double>(held_ + numbers), file_,
                            "its functions");

@@ -61,7 +61,7 @@ Task load_task(const std::filesystem::path& path) {
         try {
             const volume::Grid labels = volume::lps_grid(volume::read_volume(spare.file));
             task.spared.push_back({spare.name, spare.margin, distance_of(labels, spare.label, spare.file.string())});
-            // A folder of images is known by what was read of it.
+            // A folder of images is hashed by the samples that were read from it.
             if (std::filesystem::is_regular_file(spare.file)) file::add_file(hash, spare.file);
             else hash.add_bytes(labels.values.data(), labels.values.size() * sizeof(float));
         } catch (const Error& error) {

@@ -220,7 +220,7 @@ struct DicomReader::Process {
         }
         if (has_ended) {
             const std::string how = wait();
-            // Our walk may know what is damaged.
+            // Our own element walk may locate the damage.
             const std::string doubt = doubt_about_dicom(bytes ? *bytes : file::read_whole_file(name), name);
             if (!doubt.empty()) throw Error(doubt);
             throw Error(fmt::format(

@@ -11,7 +11,7 @@ namespace tactus::volume {
 struct PlausibleSize {
     double least, most;
 };
-/// From a patella to a femur. Smaller bones exist, but a long bone in cm has the same numbers: the user must say.
+/// From a patella to a femur. Smaller bones exist, but a long bone in cm has the same numbers, so the user must state the unit.
 constexpr PlausibleSize plausible_bone{50.0, 600.0};
 /// The field of view of a scan.
 constexpr PlausibleSize plausible_scan{50.0, 3000.0};
@@ -19,8 +19,8 @@ constexpr PlausibleSize plausible_scan{50.0, 3000.0};
 /// Metres in "mm", "cm" or "m". Throws Error for anything else.
 double metres_in(std::string_view unit);
 
-/// What to ask about `what` ("the mesh") that is `extent` units across: one sentence that says which options there are;
-/// empty when it is plausible in mm.
+/// Question about the unit of `what` ("the mesh"), which is `extent` units across: one sentence with the options; empty
+/// if mm is plausible.
 std::string unit_question(std::string_view what, double extent, const PlausibleSize& size);
 
 }  // namespace tactus::volume

@@ -141,7 +141,7 @@ SampleMap<Frame::ras> from_quaternion(const Header& h, double unit) {
     return map;
 }
 
-// A quaternion longer than 1 is no rotation, and a negative spacing would mirror: which of them is wrong is not known.
+// A quaternion longer than 1 is not a rotation, and a negative spacing would mirror. Neither can be corrected.
 void check_quaternion(const Header& h, const std::string& name) {
     double square = 0.0;
     for (const double part : h.quatern) square += part * part;

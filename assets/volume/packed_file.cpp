@@ -55,7 +55,7 @@ public:
                 if (stream_.avail_in == 0) break;
             }
             if (has_ended_) {
-                // Programs that pack in parallel write one stream after the other. What else follows is no data.
+                // Parallel compressors write several streams in sequence. Anything else after a stream is ignored.
                 if (*stream_.next_in != 'B') break;
                 BZ2_bzDecompressEnd(&stream_);
                 open();

@@ -126,7 +126,7 @@ Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurfac
             if (surface.triangles) free = surface.free_distance(from, direction, free, shape_, part);
         budget_.triangles -= given - part.triangles;
         if (part.is_spent()) {
-            // The rest of a budget says nothing about the length.
+            // The remainder of a budget is no measure for the step length.
             if (given < max_triangles / 4) break;
             stride_ = std::max(0.25 * tried, settled);
             continue;

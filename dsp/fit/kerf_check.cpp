@@ -136,7 +136,7 @@ Opening opening_from(double excess, const std::vector<Step>& steps, std::span<co
             }
         }
         if (!(weights > 0.0)) return {};
-        // All strips together tell as much as a few independent ones.
+        // Strips are correlated: all together count as `independent` ones.
         const double information = independent / (weights * std::max(squares / weights, 1e-14));
         for (double& m : matrix) m *= information;
         for (double& m : solved) m *= information;
@@ -154,7 +154,7 @@ Opening opening_from(double excess, const std::vector<Step>& steps, std::span<co
     return found;
 }
 
-/// The median of what single strips say, by how much they can say.
+/// Median of the openings from single strips, weighted by their levers.
 double middle_opening(std::vector<Step> steps) {
     std::erase_if(steps, [](const Step& s) { return !(std::abs(s.lever()) > 0.1); });
     std::ranges::sort(steps, {}, [](const Step& s) { return s.step / s.lever(); });
@@ -187,7 +187,7 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
                 steps.push_back(*step);
         seen.strips = static_cast<int>(steps.size());
         if (seen.strips < independent) return seen;
-        // From no error, and from what half of the strips say: an error of millimetres is far from where it is looked for.
+        // Two starts, no error and the median of the strips: a local search from 0 does not reach an error of millimetres.
         const Opening near = opening_from(0.0, steps, held.information()),
                       far = opening_from(middle_opening(steps), steps, held.information());
         const Opening& best = far.misfit < near.misfit ? far : near;
@@ -195,7 +195,7 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
         seen.spread = best.spread;
         return seen;
     };
-    // What contradicts a told kerf must know it well: long strips say it with the least noise.
+    // Only long strips, which have the least noise, may contradict a given kerf.
     if (told) return opening_of(long_reach);
     ContourOpening found = opening_of(short_reach);
     // Where short strips are too few, or their noise is a large opening, curvature is not what matters.
@@ -223,8 +223,8 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
         made.is_contradicted = std::abs(missing) > limit;
         made.is_too_wide = left * (1.0 / cosine - 1.0) > max_error;
     } else if (contour.strips >= independent) {
-        // Faces of which no bone is lost lie on each other however the contour beside them looks: ridges that end there
-        // have steps as well, which `spread` knows of.
+        // Without lost bone, faces touch whatever the contour beside them: ridges that end there also cause steps, which
+        // `spread` includes.
         const double doubt = share_of_spread * contour.spread;
         made.is_contradicted = missing > std::max(max_error, doubt);
         made.is_open = !made.is_contradicted && std::max(0.0, missing) + doubt > max_error;
@@ -263,7 +263,7 @@ CommonOpening common_opening(std::span<const ContourOpening> pairs) noexcept {
 bool CommonOpening::excludes_kerf(const ContourOpening& pair) const noexcept {
     if (pairs < 3 || pair.strips < independent) return false;
     const double prior = scatter * scatter + spread * spread, own = pair.spread * pair.spread;
-    // What a pair that contradicts the others has lost, the others do not know.
+    // The others are no evidence for a pair that contradicts them.
     if (-pair.excess - missing > 2.0 * std::sqrt(own + prior)) return false;
     const double mean = (missing * own - pair.excess * prior) / (own + prior);
     return mean + std::sqrt(own * prior / (own + prior)) < max_error;

@@ -40,7 +40,7 @@ bool is_free(const Vec3& a, const Vec3& b, double radius, const rope::Obstacle* 
     return true;
 }
 
-/// Whether a way keeps off the bone, apart from its ends. Between two points a way round bone cuts off an arc.
+/// True if a path stays clear of the bone, except at its ends. A polyline around bone cuts off an arc between points.
 bool keeps_off(const std::vector<Vec3>& path, double radius, const rope::Obstacle* bone) {
     constexpr double tolerance = 0.3 * mm, min_curve = 10.0 * mm;
     Vec3 normal(0.0);

@@ -85,7 +85,7 @@ struct Lines {
     double height(std::size_t row) const { return low + (static_cast<double>(row) + 0.5) * width; }
 };
 
-/// Of each line, the sorted places at which it crosses the section. A piece is looked at only by the lines near it.
+/// Sorted crossings of each line with the section. Each edge is tested only against the lines near it.
 std::vector<std::vector<double>> crossings(const InPlane& in, const Section& section, const Lines& lines) {
     std::vector<std::vector<double>> places(lines.count);
     for (const auto& [a, b] : section.pieces) {

@@ -128,7 +128,7 @@ AttachedVessel::Layout AttachedVessel::layout_of(std::span<const Vec3> course, s
             made.held.push_back({made.points.size(), a.body, end});
             made.points.push_back(pose(a).apply(end));
         }
-        // Both ends are held by one body: what pulls between them is felt by nothing.
+        // Both ends belong to one body: the tension between them has no effect.
         made.rest.push_back(std::max(glm::length(to - from), 1e-4));
         made.is_span.push_back(0);
         if (k + 1 == attachments.size()) break;

@@ -126,8 +126,7 @@ void Rope::measure() noexcept {
     for (std::size_t n = 0; n < rest_.size(); ++n) length_[n] = glm::length(x_[n + 1] - x_[n]);
 }
 
-/// A point that is far from the bone is not looked at again before it may have come near: the bone stands still within
-/// a tick.
+/// Skips points that have moved less than their last clearance, because the bone is fixed within a tick.
 void Rope::look_at(const Obstacle* bone, bool is_anew) noexcept {
     measure();
     if (!bone) return;
@@ -141,7 +140,7 @@ void Rope::look_at(const Obstacle* bone, bool is_anew) noexcept {
             if (glm::dot(way, way) < clear_[n] * clear_[n]) continue;
         }
         depth_[n] = material_.radius - bone->distance(x_[n], normal_[n]);
-        // A field that does not say where its surface is gives no contact.
+        // No contact where the field has no gradient.
         if (normal_[n] == Vec3(0.0)) depth_[n] = std::min(depth_[n], 0.0);
         clear_[n] =
             depth_[n] < -near_bone ? bone->free_way(x_[n], material_.radius - depth_[n], material_.radius) : 0.0;

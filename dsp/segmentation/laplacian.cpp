@@ -8,7 +8,7 @@ namespace tactus::segmentation {
 
 namespace {
 
-// The number of sides is known to the compiler, so that a row's sums stay in registers.
+// The number of sides is a template parameter, so that the sums of a row stay in registers.
 template <int sides>
 void multiply_sides(const Laplacian& a, const float* b, const float* x, float* y) {
     const std::size_t rows = a.rows();

@@ -37,7 +37,7 @@ struct StrokePlan {
     double grip_stiffness = 800.0;
     Tremor tremor{};
     /// m that an operator who pressed goes on without feeling anything. Then the resistance is gone, because the cut is
-    /// through or because the device gives no force: the operator pulls back to the start and comes in anew.
+    /// through or because the device gives no force: the operator pulls back to the start and tries again.
     double blind_advance = 6e-3;
     double pause = 2.5;  ///< s at the start before coming in anew: longer than a device takes until its forces return
 
@@ -119,7 +119,7 @@ private:
         return plan_.feed_speed * std::clamp((1.0 - felt_ / plan_.thrust) * calm(), -1.0, 1.0);
     }
 
-    /// Whether what resisted is gone. Who comes in anew and meets nothing where it was goes on.
+    /// Detects that the resistance is gone. An operator who tries again and meets none at that place continues.
     void notice_loss(double reached) noexcept {
         if (pulls_back_) {
             if (depth_ > 0.0) waits_since_ = time_;

@@ -186,8 +186,8 @@ std::optional<CutPlane> fit_cut_plane(const CutBone& bone, const PlannedCut& cut
         mean += p.position / static_cast<double>(plane.points.size());
     }
     plane.rms = std::sqrt(sum / static_cast<double>(plane.points.size()));
-    // The narrower extent of the middle surface, as a standard deviation: a groove as shallow as the kerf is wide says
-    // nothing about an angle.
+    // The narrower extent of the middle surface, as a standard deviation: a groove no deeper than the kerf is wide
+    // does not determine an angle.
     double uu = 0.0, uv = 0.0, vv = 0.0;
     for (const CutPoint& p : plane.points) {
         const double u = glm::dot(p.position - mean, frame.u), v = glm::dot(p.position - mean, frame.v);

@@ -131,7 +131,7 @@ Severance severance_of(const CutBone& bone, const PlannedCut& cut, const CutPlan
         for (double d = -deepest; d < deepest; d += step) {
             const Vec3 p = start + d * down;
             if (bone.before_at(p) >= 0.0) continue;
-            // Shallow remains are within what interpolation can tell.
+            // Shallow remains are below the accuracy of interpolation.
             const double now = bone.after_at(p);
             is_cut = is_cut || now > 0.0;
             is_whole = is_whole || now < -0.5 * h;

@@ -69,7 +69,7 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
                     tube = measured(scan, window, search.sampling, tube);
                     if (tube.score < search.min_mean || tube.contrast < faintest * node.contrast || tube.valid < 0.6)
                         continue;
-                    // What is thinner than the template looks faint in it.
+                    // Vessels thinner than the template appear faint.
                     const bool is_fitted = tube.contrast < level_of(tube.radius / voxel) * node.contrast;
                     if (is_fitted) {
                         tube = fitted(scan, window, search.sampling, tube, {0.5 * radius, radius, 0.5});

@@ -16,7 +16,7 @@ constexpr std::size_t max_fits = 5;
 constexpr double max_error = 0.06;  ///< of the depth; on phantoms the true error is about half of it
 constexpr double max_misfit = 2.0;
 
-/// Nodes of a branch as a narrowing is looked for in them.
+/// Radii along a branch, prepared for the search for narrowings.
 class Radii {
 public:
     explicit Radii(const Branch& branch) : branch_(branch) {
@@ -149,7 +149,7 @@ std::optional<Stenosis> measured_stenosis(const Search& search, const Noise& noi
             found.percent = 100.0 * narrowing->depth;
             found.radius = narrowing->reference * (1.0 - narrowing->depth);
             found.error_percent = 100.0 * narrowing->depth_error;
-            // Beside 100 % the curvature of chi squared no longer tells the error.
+            // Near 100 % the curvature of chi squared no longer gives the error.
             found.is_uncertain = narrowing->depth_error > max_error || narrowing->misfit > max_misfit ||
                                  narrowing->depth + 2.0 * narrowing->depth_error > 1.0;
         }

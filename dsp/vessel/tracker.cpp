@@ -297,8 +297,8 @@ private:
         }
     }
 
-    /// Where a vessel is not told from noise, the nodes before that are less and less sure of it, too: over eight radii, and
-    /// at most 0.9 in the whole branch.
+    /// Where a vessel becomes indistinguishable from noise, confidence decreases over the eight radii before; it is at
+    /// most 0.9 in the whole branch.
     void doubt_ends() {
         for (Branch& branch : found_.track.branches)
             for (const bool at_end : {true, false}) {

@@ -98,7 +98,7 @@ SawSound SawSounds::blend(const SawSound& a, const SawSound& b, double x) noexce
     };
     mix(x, a.orders, b.orders, out.orders);
     out.residual = a.residual + x * (b.residual - a.residual);
-    // A faint residual says little about the shape: each counts by its level.
+    // Weight the shapes by level, because the shape of a faint residual is unreliable.
     const double shape = out.residual > 0.0 ? x * b.residual / out.residual : x;
     mix(shape, a.lines, b.lines, out.lines);
     mix(shape, a.swell_cos, b.swell_cos, out.swell_cos);

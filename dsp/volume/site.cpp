@@ -333,7 +333,7 @@ std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, co
 double resting_clearance(const Grid& distance, const SawSite& site, double clearance, const SiteRequest& request) {
     constexpr double most = 60e-3, step = 1e-3;
     const double reach = 0.5 * request.blade_length + request.travel;
-    // The surface of the site itself is as near as the clearance says.
+    // The site's own surface is exactly `clearance` away.
     const double gap = std::min(request.min_gap, clearance - 0.1e-3);
     const auto is_clear = [&](double away) {
         for (const double height : {0.0, 0.5 * request.blade_height, request.blade_height})

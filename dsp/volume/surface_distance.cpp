@@ -19,7 +19,7 @@ constexpr int part_length = 16;  // samples of a row that are skipped together; 
 
 double widest_of(const Grid& layout) { return std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z}); }
 
-// Per sample: the nearest triangle so far and its closest point. Together, because neighbours are asked for both.
+// Per sample: the nearest triangle so far and its closest point. Stored together, because neighbours read both.
 struct Foot {
     std::int32_t triangle = -1;
     glm::vec3 at{0.0f};  // m from the layout's origin

@@ -364,7 +364,7 @@ JudgedRegistration search_registration(std::span<const contact::SurfacePoint> mo
         starts.push_back(each.pose);
         add(each.pose);
     }
-    // What the sampling of the surfaces cannot tell apart.
+    // Differences below the sampling of the surfaces.
     const double noise = 1e-3 * score.gyration();
     const auto ratio = [&](double better, double worse) { return (better + noise) / (worse + noise); };
     std::size_t best = 0;

@@ -159,7 +159,7 @@ std::optional<std::vector<TimeLine>> without_rounding(const TimedSamples& sample
         std::size_t end = first + 1;
         const double start = ahead[first];
         double sum = 0.0, moment = 0.0, last = start;
-        // Moments about the first sample, moved to the middle afterwards: the end is not known yet.
+        // Moments about the first sample, shifted to the middle once the end is known.
         for (; end < size && ahead[end] - last <= gap; ++end) {
             last = ahead[end];
             sum += last - start, moment += static_cast<double>(end - first) * (last - start);
@@ -183,7 +183,7 @@ std::optional<std::vector<TimeLine>> without_rounding(const TimedSamples& sample
         first = end;
     }
     if (counted == 0.0) return std::nullopt;
-    // In a short piece the clock may stand still: its samples follow each other as those of the others do.
+    // In a short piece the clock may not advance; use the mean slope of the others.
     for (TimeLine& line : lines)
         if (line.end - line.first < 8) line.slope = slopes / counted;
     return lines;
