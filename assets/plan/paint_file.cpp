@@ -3,11 +3,11 @@
 
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "dsp/contact/neighbours.hpp"
 #include "dsp/contact/scanned_border.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/faces.hpp"
 #include "dsp/fit/surface_brush.hpp"
-#include "dsp/geometry/neighbours.hpp"
 #include "dsp/geometry/point_tree.hpp"
 
 #include <fmt/format.h>
@@ -75,7 +75,7 @@ std::vector<Stroke> covering_strokes(std::span<const contact::SurfacePoint> poin
     std::vector<std::size_t> widest_first(all.size());
     std::iota(widest_first.begin(), widest_first.end(), std::size_t{0});
     std::ranges::stable_sort(widest_first, [&](std::size_t a, std::size_t b) { return all[a].radius > all[b].radius; });
-    const geometry::Neighbours neighbours(painted, stroke_radius);
+    const contact::Neighbours neighbours(painted, stroke_radius);
     std::vector<char> covered(painted.size(), 0);
     for (const std::size_t n : widest_first) {
         if (covered[n]) continue;

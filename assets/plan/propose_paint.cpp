@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/plan/propose_paint.hpp"
 
+#include "dsp/contact/neighbours.hpp"
 #include "dsp/contact/scanned_border.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/faces.hpp"
-#include "dsp/geometry/neighbours.hpp"
 #include "dsp/geometry/point_tree.hpp"
 
 #include <glm/geometric.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 /// Roughness: mean of 1 − cos of the angle between a point's normal and the normals nearby.
 std::vector<double> roughness_of(std::span<const contact::SurfacePoint> points, double near) {
-    const geometry::Neighbours neighbours(points, near);
+    const contact::Neighbours neighbours(points, near);
     std::vector<double> rough(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         double sum = 0.0, count = 0.0;
@@ -40,7 +40,7 @@ std::size_t label_patches(std::span<contact::SurfacePoint> points, const std::ve
         return broken[i] != 0 && points[i].label != contact::surface_label::as_scanned;
     };
     std::size_t count = 0;
-    for (const auto& patch : geometry::patches_of(points, near, is_broken)) {
+    for (const auto& patch : contact::patches_of(points, near, is_broken)) {
         double area = 0.0;
         for (const std::size_t i : patch) area += points[i].area;
         if (area < min_area) continue;
@@ -69,7 +69,7 @@ double patch_gap(std::span<const contact::SurfacePoint> points) {
 
 std::size_t propose_fracture(std::span<contact::SurfacePoint> points, const ProposalOptions& options) {
     const std::vector<double> rough = roughness_of(points, options.near);
-    const geometry::Neighbours neighbours(points, options.smooth);
+    const contact::Neighbours neighbours(points, options.smooth);
     std::vector<std::uint8_t> broken(points.size(), 0);
     std::vector<double> nearby;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -112,7 +112,7 @@ std::vector<std::uint8_t> broken_inside(std::span<const contact::SurfacePoint> p
         const bool is_askew = glm::dot(place.rotate(points[i].normal), out) < options.looks_along;
         inside[i] = depth > options.deep || (is_askew && depth > options.askew);
     }
-    const geometry::Neighbours neighbours(points, options.smooth);
+    const contact::Neighbours neighbours(points, options.smooth);
     for (std::size_t i = 0; i < points.size(); ++i) {
         double all = 0.0, those_inside = 0.0;
         neighbours.around(i, [&](std::size_t j) {
@@ -142,7 +142,7 @@ std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span
         return glm::length(other[tree.nearest(points[i].position)].position - points[i].position) < reach;
     };
     std::size_t count = 0;
-    for (const auto& patch : geometry::patches_of(points, patch_gap(points), [&](std::size_t i) {
+    for (const auto& patch : contact::patches_of(points, patch_gap(points), [&](std::size_t i) {
              return points[i].label == contact::surface_label::fracture;
          }))
         if (std::ranges::any_of(patch, is_near)) count += patch.size();

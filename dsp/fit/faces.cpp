@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/faces.hpp"
 
-#include "dsp/geometry/neighbours.hpp"
+#include "dsp/contact/neighbours.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -28,7 +28,7 @@ Paint paint_of(std::span<const contact::SurfacePoint> points, const FaceOptions&
             paint.points.push_back(points[n]);
             paint.index.push_back(n);
         }
-    const geometry::Neighbours neighbours(paint.points, options.smooth);
+    const contact::Neighbours neighbours(paint.points, options.smooth);
     for (std::size_t n = 0; n < paint.points.size(); ++n) {
         Vec3 sum(0.0);
         double area = 0.0;
@@ -46,8 +46,7 @@ Paint paint_of(std::span<const contact::SurfacePoint> points, const FaceOptions&
 constexpr int none = -1;
 
 /// Region growing: faces start at the flattest points.
-std::vector<int> grow(const Paint& paint, const geometry::Neighbours& touching, const FaceOptions& options,
-                      int& count) {
+std::vector<int> grow(const Paint& paint, const contact::Neighbours& touching, const FaceOptions& options, int& count) {
     std::vector<std::size_t> order(paint.points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t n) { return paint.flatness[n]; });
@@ -75,7 +74,7 @@ std::vector<int> grow(const Paint& paint, const geometry::Neighbours& touching, 
 std::vector<std::vector<std::size_t>> split_faces(std::span<const contact::SurfacePoint> points,
                                                   const FaceOptions& options) {
     const Paint paint = paint_of(points, options);
-    const geometry::Neighbours touching(paint.points, options.max_gap);
+    const contact::Neighbours touching(paint.points, options.max_gap);
     int count = 0;
     std::vector<int> face = grow(paint, touching, options, count);
     std::vector<double> area(static_cast<std::size_t>(count), 0.0);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/fit_surface.hpp"
 
+#include "dsp/contact/neighbours.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/main_axes.hpp"
 #include "dsp/geometry/nearest_points.hpp"
-#include "dsp/geometry/neighbours.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -200,7 +200,7 @@ FitSurface make_live_fit_surface(std::span<const contact::SurfacePoint> points, 
 std::vector<FitSurface> make_fit_faces(std::span<const contact::SurfacePoint> points, const volume::Grid& distance,
                                        const FitSurfaceOptions& options) {
     auto patches =
-        geometry::patches_of(points, options.max_gap, [&](std::size_t i) { return points[i].label == options.paint; });
+        contact::patches_of(points, options.max_gap, [&](std::size_t i) { return points[i].label == options.paint; });
     std::erase_if(patches, [](const auto& patch) { return patch.size() < min_points; });
     std::ranges::stable_sort(patches, std::ranges::greater{}, [](const auto& patch) { return patch.size(); });
     std::vector<FitSurface> faces;

@@ -18,19 +18,19 @@ namespace {
 /// Of the devices that a node drives and a hand feels, the one with the least of what `stated` returns; 0 counts as none.
 /// Null: it drives none.
 template <class Stated>
-const DeviceSlot* min_driven(const LiveNode& node, Stated&& stated) {
-    const auto value = [&](const DeviceSlot& slot) {
+const io::DeviceSlot* min_driven(const LiveNode& node, Stated&& stated) {
+    const auto value = [&](const io::DeviceSlot& slot) {
         const double least = stated(slot.port.info);
         return least > 0.0 ? least : HUGE_VAL;
     };
-    const DeviceSlot* found = nullptr;
+    const io::DeviceSlot* found = nullptr;
     for (const auto& [slot, use] : node.uses.devices)
         if (use == DeviceUse::drive && !slot->port.info.without_motors && (!found || value(*slot) < value(*found)))
             found = slot;
     return found;
 }
 
-const DeviceSlot* softest_driven(const LiveNode& node) {
+const io::DeviceSlot* softest_driven(const LiveNode& node) {
     return min_driven(node, [](const DeviceInfo& info) { return info.max_stiffness; });
 }
 
@@ -41,12 +41,12 @@ constexpr double stable_share = 0.8;
 
 /// True if the patch declares the device; false for one that only the command line names
 /// (`--set hand.device=touch`).
-bool GenerationBuilder::is_declared(const DeviceSlot& slot) {
+bool GenerationBuilder::is_declared(const io::DeviceSlot& slot) {
     return std::ranges::find(plan().patch.devices, slot.name, &patch::PatchDevice::name) != plan().patch.devices.end();
 }
 
 /// Hardware that the patch does not declare.
-bool GenerationBuilder::is_unknown(const DeviceSlot& slot) {
+bool GenerationBuilder::is_unknown(const io::DeviceSlot& slot) {
     return !is_declared(slot) && haptic::is_real_driver(slot.name);
 }
 
@@ -72,7 +72,7 @@ void GenerationBuilder::scale_forces() {
                                                             &OptionText::name) != plan().patch.nodes[n].settings.end())
             continue;
         const LiveNode& sink = *made_->nodes[static_cast<std::size_t>(spring.sink)];
-        const DeviceSlot* const slot = min_driven(sink, [](const DeviceInfo& info) { return info.max_force; });
+        const io::DeviceSlot* const slot = min_driven(sink, [](const DeviceInfo& info) { return info.max_force; });
         const auto most = plan().nodes[static_cast<std::size_t>(spring.sink)].params.find("max_force");
         if (!slot || !is_unknown(*slot) || most == plan().nodes[static_cast<std::size_t>(spring.sink)].params.end())
             continue;
@@ -93,7 +93,7 @@ void GenerationBuilder::scale_forces() {
 void GenerationBuilder::limit_stiffness() {
     const auto device_of = [this](const std::string& name) {
         // A node that names no device means the only one.
-        const DeviceSlot* found = nullptr;
+        const io::DeviceSlot* found = nullptr;
         for (const auto& node : made_->nodes)
             for (const auto& [slot, use] : node->uses.devices)
                 if (name.empty() || slot->name == name) found = slot;
@@ -102,7 +102,7 @@ void GenerationBuilder::limit_stiffness() {
     const std::vector<analyse::ForceLoop> loops = analyse::force_loops(plan(), device_of);
     for (const analyse::FeltSpring& spring : analyse::felt_springs(plan())) {
         const LiveNode& sink = *made_->nodes[static_cast<std::size_t>(spring.sink)];
-        const DeviceSlot* const slot = softest_driven(sink);
+        const io::DeviceSlot* const slot = softest_driven(sink);
         // 'check' shows a patch on its own devices as it is.
         if (!slot || (context_.only_checked && is_declared(*slot))) continue;
         const DeviceInfo& info = slot->port.info;

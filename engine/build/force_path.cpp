@@ -21,7 +21,7 @@ namespace {
 constexpr Flicks longest_lateness = flicks_per_second * 3 / 1000;  // of a value of force; as of a commit
 constexpr Flicks oldest_world = flicks_per_second;
 
-bool drives(const LiveNode& node, const DeviceSlot& slot) {
+bool drives(const LiveNode& node, const io::DeviceSlot& slot) {
     return std::ranges::any_of(node.uses.devices,
                                [&](const auto& use) { return use.first == &slot && use.second == DeviceUse::drive; });
 }
@@ -126,14 +126,14 @@ void add_wires(const Generation& generation, const std::vector<compile::Dependen
 
 }  // namespace
 
-std::vector<compile::Dependence> dependence_of(const Generation& generation, const DeviceSlot& slot) {
+std::vector<compile::Dependence> dependence_of(const Generation& generation, const io::DeviceSlot& slot) {
     std::vector<int> sinks;
     for (std::size_t i = 0; i < generation.nodes.size(); ++i)
         if (drives(*generation.nodes[i], slot)) sinks.push_back(static_cast<int>(i));
     return compile::dependence_on(generation.plan, sinks);
 }
 
-std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSlot& slot) {
+std::vector<ValueSource> sources_of(const Generation& generation, const io::DeviceSlot& slot) {
     const std::vector<compile::Dependence> dependence = dependence_of(generation, slot);
     std::vector<compile::Dependence> of_group(generation.groups.size(), compile::Dependence::none);
     for (std::size_t i = 0; i < dependence.size(); ++i) {
@@ -159,7 +159,7 @@ std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSl
     return sources;
 }
 
-Flicks warm_up_of(const Generation& generation, const DeviceSlot& slot) {
+Flicks warm_up_of(const Generation& generation, const io::DeviceSlot& slot) {
     const std::vector<compile::Dependence> dependence = dependence_of(generation, slot);
     const compile::Schedule& plan = generation.plan;
     std::vector<Flicks> of_group(plan.groups.size());
@@ -183,10 +183,10 @@ Flicks warm_up_of(const Generation& generation, const DeviceSlot& slot) {
 }
 
 std::vector<bool> nodes_of_forces(const Generation& generation) {
-    return nodes_before(generation, [](const DeviceSlot& slot) { return slot.port.info.fingers == 0; });
+    return nodes_before(generation, [](const io::DeviceSlot& slot) { return slot.port.info.fingers == 0; });
 }
 
-std::uint64_t hash_of_force_path(const Generation& generation, const DeviceSlot& slot) {
+std::uint64_t hash_of_force_path(const Generation& generation, const io::DeviceSlot& slot) {
     const std::vector<compile::Dependence> dependence = dependence_of(generation, slot);
     std::vector<std::uint64_t> parts;  // whatever the order in the text
     for (std::size_t i = 0; i < dependence.size(); ++i)
@@ -200,8 +200,8 @@ std::uint64_t hash_of_force_path(const Generation& generation, const DeviceSlot&
     return hash.value();
 }
 
-std::vector<const DeviceSlot*> changed_forces(const Generation& before, const Generation& now) {
-    std::vector<const DeviceSlot*> changed;
+std::vector<const io::DeviceSlot*> changed_forces(const Generation& before, const Generation& now) {
+    std::vector<const io::DeviceSlot*> changed;
     for (const auto& [slot, hash] : before.force_paths)
         if (!now.force_paths.contains(slot)) changed.push_back(slot);
     for (const auto& [slot, hash] : now.force_paths) {

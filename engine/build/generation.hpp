@@ -74,7 +74,7 @@ struct Generation {
     std::unique_ptr<SwitchGate> gate;  ///< in a live run, if the plan reaches a hand
     std::unordered_map<const Input*, std::uint64_t> constants;  ///< content hashes of the inputs that files set
     /// For each driven device: a hash of everything that its force depends on, except ramped parameters.
-    std::map<const DeviceSlot*, std::uint64_t> force_paths;
+    std::map<const io::DeviceSlot*, std::uint64_t> force_paths;
 
     /// Returns the ramp of a parameter, or null if it changes immediately.
     run::ParamRamp* ramp_of(const Param* param) const;

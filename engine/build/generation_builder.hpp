@@ -46,8 +46,8 @@ private:
     void prepare_node(std::size_t node);
 
     // fit_to_devices.cpp
-    bool is_declared(const DeviceSlot& slot);
-    bool is_unknown(const DeviceSlot& slot);
+    bool is_declared(const io::DeviceSlot& slot);
+    bool is_unknown(const io::DeviceSlot& slot);
     void notify(const std::string& notice);
     void fit_to_devices();
     void scale_forces();

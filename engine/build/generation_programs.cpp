@@ -169,21 +169,21 @@ void GenerationBuilder::make_programs() {
         assign_devices(i);
     }
     for (const auto& program : made_->programs)
-        for (const DeviceSlot* slot : program->driven) {
+        for (const io::DeviceSlot* slot : program->driven) {
             program->sources.push_back(sources_of(*made_, *slot));
             program->warm_ups.push_back(warm_up_of(*made_, *slot));
         }
     for (const auto& program : made_->programs)
-        for (const DeviceSlot* slot : program->driven) made_->force_paths[slot] = hash_of_force_path(*made_, *slot);
+        for (const io::DeviceSlot* slot : program->driven) made_->force_paths[slot] = hash_of_force_path(*made_, *slot);
     for (const auto& program : made_->programs) program->is_new_path.assign(program->driven.size(), !before_);
     if (!before_) return;
-    const std::vector<const DeviceSlot*> changed = changed_forces(*before_, *made_);
+    const std::vector<const io::DeviceSlot*> changed = changed_forces(*before_, *made_);
     for (const auto& program : made_->programs)
         for (std::size_t i = 0; i < program->driven.size(); ++i)
             program->is_new_path[i] = std::ranges::find(changed, program->driven[i]) != changed.end();
     for (std::size_t g = 0; g < made_->groups.size(); ++g)
         made_->programs[g]->changes_force = std::ranges::any_of(
-            changed, [&](const DeviceSlot* slot) { return slot->group == made_->groups[g]->index; });
+            changed, [&](const io::DeviceSlot* slot) { return slot->group == made_->groups[g]->index; });
 }
 
 void GenerationBuilder::make_ramps() {
@@ -210,7 +210,7 @@ void GenerationBuilder::assign_devices(std::size_t index) {
             throw Error(node.where, "another node already drives this device; a hand takes one force");
         program.driven.push_back(slot);
     }
-    std::ranges::sort(program.devices, {}, &DeviceSlot::id);
+    std::ranges::sort(program.devices, {}, &io::DeviceSlot::id);
     for (io::SoundHeard* heard : made_->nodes[index]->uses.heard) program.heard.push_back(heard);
     std::ranges::sort(program.heard, {}, &io::SoundHeard::id);
     // Late ticks are never run back to back against a hand.

@@ -7,7 +7,7 @@
 #include "dsp/core/signal_hash.hpp"
 #include "engine/build/delay_line.hpp"
 #include "engine/build/event_merge.hpp"
-#include "engine/io/device_guard.hpp"
+#include "engine/io/device_slot.hpp"
 #include "engine/io/frames.hpp"
 #include "engine/io/sound_heard.hpp"
 #include "engine/observe/telemetry.hpp"
@@ -104,20 +104,6 @@ struct MovedOutput {
     std::size_t bytes = 0;
 };
 
-/// A device of one group; see graph/node/setup.hpp for the interface that nodes use.
-struct DeviceSlot {
-    std::string name;
-    std::unique_ptr<HapticDevice> device;
-    DevicePort port;
-    int group = -1;
-    int id = 0;  ///< within its group
-    Flicks period = 0;  ///< of that group
-    io::DeviceGuard guard;  ///< in live runs
-    Wrench committed;  ///< of the last tick
-    Flicks settled = 0;  ///< logical time from which values on the force path are computed; forces are suspended before
-    int overdue = -1;  ///< index in the program's sources of the one whose values cannot be used now; −1: none
-};
-
 /// A source of a device's force: another group on whose values it depends, or wires between groups that lead to it.
 struct ValueSource {
     const run::GroupRuntime* group = nullptr;
@@ -173,8 +159,8 @@ struct GroupProgram {
     std::vector<std::unique_ptr<DelayLine>> delays;
     std::vector<std::unique_ptr<EventMerge>> merges;
     std::vector<Output*> event_outputs;  ///< emptied after each call
-    std::vector<DeviceSlot*> devices;
-    std::vector<DeviceSlot*> driven;  ///< the devices whose force a node sets
+    std::vector<io::DeviceSlot*> devices;
+    std::vector<io::DeviceSlot*> driven;  ///< the devices whose force a node sets
     std::vector<std::vector<ValueSource>> sources;  ///< of each of them: force values first, wires last
     std::vector<Flicks> warm_ups;  ///< of each of them, as build::warm_up_of
     std::vector<bool> is_new_path;  ///< for each of them: its force path differs from that of the previous program

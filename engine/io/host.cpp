@@ -88,14 +88,14 @@ std::string EngineHost::device_name(const std::string& wanted, const SourceLocat
     throw Error(where, "which device is meant? Name it, as in device = \"simulated\"");
 }
 
-build::DeviceSlot* EngineHost::find_device(const std::string& name) const {
+DeviceSlot* EngineHost::find_device(const std::string& name) const {
     for (const auto* list : {&devices, &opened_.devices})
         for (const auto& slot : *list)
             if (slot->name == name) return slot.get();
     return nullptr;
 }
 
-DevicePort& EngineHost::use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where) {
+DevicePort& EngineHost::use_device(DeviceSlot& slot, DeviceUse use, const SourceLocation& where) {
     if (slot.group != group_)
         throw Error(where, fmt::format("device '{}' is used in two groups; its nodes must share one rate, and keep it "
                                        "while the patch runs",
@@ -114,7 +114,7 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
     // A node that names no device means the only one.
     const SourceLocation& where = given.file.empty() ? node_where_ : given;
     const std::string name = device_name(wanted, where);
-    if (build::DeviceSlot* slot = find_device(name)) return use_device(*slot, use, where);
+    if (DeviceSlot* slot = find_device(name)) return use_device(*slot, use, where);
     const auto declared = std::ranges::find(patch_.devices, name, &patch::PatchDevice::name);
     const bool is_declared = declared != patch_.devices.end();
     const hosted::DeviceRequest request{is_declared ? declared->driver : name, fmt::format("device '{}'", name),
@@ -134,7 +134,7 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
         DriverGate& driver;
     };
     std::optional<Opening> opening(std::in_place, driver_);
-    auto slot = std::make_unique<build::DeviceSlot>();
+    auto slot = std::make_unique<DeviceSlot>();
     slot->name = name;
     if (recorded_) {
         const auto recorded = std::ranges::find(*recorded_, name, &RecordedDevice::name);

@@ -2,7 +2,7 @@
 // The engine's implementation of graph/node/setup.hpp: opens and owns the resources that nodes request.
 #pragma once
 
-#include "engine/build/group_program.hpp"
+#include "engine/io/device_slot.hpp"
 #include "engine/io/driver_gate.hpp"
 #include "engine/io/sound_card.hpp"
 #include "engine/io/sound_heard.hpp"
@@ -30,7 +30,7 @@ struct RecordedDevice {
 
 /// The resources that a node requested.
 struct HostUses {
-    std::vector<std::pair<build::DeviceSlot*, DeviceUse>> devices;
+    std::vector<std::pair<DeviceSlot*, DeviceUse>> devices;
     std::vector<SoundChannel*> sounds;
     std::vector<SoundHeard*> heard;
     std::vector<const RecordStream*> streams;
@@ -77,7 +77,7 @@ public:
     /// Closes the resources opened since `begin`.
     void discard();
     /// Devices opened since `begin`.
-    const std::vector<std::unique_ptr<build::DeviceSlot>>& opened_devices() const { return opened_.devices; }
+    const std::vector<std::unique_ptr<DeviceSlot>>& opened_devices() const { return opened_.devices; }
     /// Any thread: abandons the thread that is opening a driver, if any. That thread gets an error when it returns.
     bool forsake_driver() noexcept { return driver_.forsake(); }
     /// Services devices that have their own process. Returns true if one is lost: then no force reaches its hand, and
@@ -92,7 +92,7 @@ public:
     void describe_hardware() { describes_hardware_ = true; }
 
     // State of the run; control thread.
-    std::vector<std::unique_ptr<build::DeviceSlot>> devices;
+    std::vector<std::unique_ptr<DeviceSlot>> devices;
     std::vector<std::unique_ptr<Stream>> streams;
     std::vector<std::unique_ptr<SoundCard>> cards;
     std::vector<std::unique_ptr<SoundHeard>> heard;
@@ -100,8 +100,8 @@ public:
 
 private:
     std::string device_name(const std::string& wanted, const SourceLocation& where) const;
-    build::DeviceSlot* find_device(const std::string& name) const;
-    DevicePort& use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
+    DeviceSlot* find_device(const std::string& name) const;
+    DevicePort& use_device(DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
     bool is_in_use(const SoundCard& card, int channel) const;
     std::unique_ptr<SoundCard> make_card(Flicks period, const SoundPlace& place) const;
     SoundCard& open_card(std::unique_ptr<SoundCard> card, const std::vector<std::string>& names);
@@ -113,7 +113,7 @@ private:
                        std::optional<std::vector<float>> instead);
 
     struct Opened {
-        std::vector<std::unique_ptr<build::DeviceSlot>> devices;
+        std::vector<std::unique_ptr<DeviceSlot>> devices;
         std::vector<std::unique_ptr<Stream>> streams;
         std::vector<std::unique_ptr<SoundCard>> cards;
         std::vector<std::unique_ptr<SoundHeard>> heard;

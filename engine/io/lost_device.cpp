@@ -5,12 +5,12 @@
 
 namespace tactus::io {
 
-std::string service_device(build::DeviceSlot& slot) {
+std::string service_device(DeviceSlot& slot) {
     auto* const device = dynamic_cast<hosted::HostedDevice*>(slot.device.get());
     return device ? device->service() : std::string();
 }
 
-std::string loss_of(const build::DeviceSlot& slot) {
+std::string loss_of(const DeviceSlot& slot) {
     const auto* const device = dynamic_cast<const hosted::HostedDevice*>(slot.device.get());
     return device ? device->loss() : std::string();
 }

@@ -2,7 +2,7 @@
 // Detection of devices that are lost during a run.
 #pragma once
 
-#include "engine/build/group_program.hpp"
+#include "engine/io/device_slot.hpp"
 
 #include <string>
 
@@ -10,9 +10,9 @@ namespace tactus::io {
 
 /// Services a device that has its own process. Returns the reason if the device is lost, otherwise "". Control thread
 /// of a live run.
-std::string service_device(build::DeviceSlot& slot);
+std::string service_device(DeviceSlot& slot);
 
 /// Returns the last result of `service_device`.
-std::string loss_of(const build::DeviceSlot& slot);
+std::string loss_of(const DeviceSlot& slot);
 
 }  // namespace tactus::io

@@ -54,7 +54,7 @@ LinkReading OfflineDecisions::read(const Link& link, const GroupRuntime& produce
     return {index, is_late(link, index, producer.end.load(std::memory_order_relaxed) - 1, tick)};
 }
 
-void OfflineDecisions::commit(build::DeviceSlot& slot) noexcept {
+void OfflineDecisions::commit(io::DeviceSlot& slot) noexcept {
     slot.device->commit(slot.port.wrench);
     if (slot.port.info.fingers > 0) slot.device->drive(slot.port.motors);
 }
@@ -86,7 +86,7 @@ std::int64_t LiveDecisions::readable_until(const Link& link, const GroupRuntime&
 
 bool LiveDecisions::has_room(const std::vector<Link*>&, std::int64_t, int) const noexcept { return true; }
 
-int LiveDecisions::overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+int LiveDecisions::overdue(const io::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
                            std::int64_t tick) noexcept {
     const auto is_overdue = [now = tick * period_](const build::ValueSource& source) {
         if (source.link) return source.link->is_unusable(source.wires);
@@ -115,7 +115,7 @@ bool LiveDecisions::drops(const Link& link, std::int64_t tick, int frames) noexc
     return drop;
 }
 
-void LiveDecisions::commit(build::DeviceSlot& slot) noexcept {
+void LiveDecisions::commit(io::DeviceSlot& slot) noexcept {
     if (!driver.enter()) return;
     slot.guard.commit(*slot.device, slot.port.wrench, steady_ns());
     if (slot.port.info.fingers > 0) slot.device->drive(slot.port.motors);

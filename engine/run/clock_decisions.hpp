@@ -40,7 +40,7 @@ public:
 
     bool holds_off(std::int64_t tick, bool before) noexcept override;
     LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
-    void commit(build::DeviceSlot& slot) noexcept override;
+    void commit(io::DeviceSlot& slot) noexcept override;
 
 private:
     const PauseWindow* pause_;
@@ -58,11 +58,11 @@ public:
     std::int64_t readable_until(const Link& link, const GroupRuntime& producer, std::int64_t tick,
                                 std::int64_t until) const noexcept override;
     bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept override;
-    int overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+    int overdue(const io::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
                 std::int64_t tick) noexcept override;
     LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
     bool drops(const Link& link, std::int64_t tick, int frames) noexcept override;
-    void commit(build::DeviceSlot& slot) noexcept override;
+    void commit(io::DeviceSlot& slot) noexcept override;
 
 private:
     const PauseWindow& pause_;

@@ -48,14 +48,14 @@ bool Decisions::may_begin(const std::vector<Link*>& links, std::int64_t tick) co
     return has_room(links, tick, 1);
 }
 
-void Decisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept {
+void Decisions::acquire(io::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept {
     sample(slot, elapsed);
     if (driver.is_forsaken()) return;
     log_.note(take::TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
 }
 
 /// On the virtual clock groups wait for each other.
-int Decisions::overdue(const build::DeviceSlot&, const std::vector<build::ValueSource>&, std::int64_t) noexcept {
+int Decisions::overdue(const io::DeviceSlot&, const std::vector<build::ValueSource>&, std::int64_t) noexcept {
     return -1;
 }
 
@@ -89,13 +89,13 @@ bool Decisions::is_late(const Link& link, std::int64_t index, std::int64_t last,
     return index < std::min(wanted, last) && link.misses(wanted);
 }
 
-void Decisions::let_rest(build::DeviceSlot& slot) noexcept {
+void Decisions::let_rest(io::DeviceSlot& slot) noexcept {
     if (!driver.enter()) return;
     slot.guard.commit(*slot.device, {}, steady_ns());
     driver.leave();
 }
 
-void Decisions::sample(build::DeviceSlot& slot, Flicks elapsed) noexcept {
+void Decisions::sample(io::DeviceSlot& slot, Flicks elapsed) noexcept {
     if (!driver.enter()) return;
     const DeviceSample sample = slot.device->acquire(seconds(elapsed));
     if (!driver.leave()) return;

@@ -111,10 +111,10 @@ public:
     // In a call.
     /// Reads the device's state into its port. `elapsed` in flicks since the last call. If the thread was abandoned in
     /// the driver, `driver` reports it.
-    virtual void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept;
+    virtual void acquire(io::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept;
     /// Returns the index of the first of the `sources` of a device's force that is overdue or not finite; −1: none.
     /// `slot.overdue` holds the previous result. Wait-free.
-    virtual int overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+    virtual int overdue(const io::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
                         std::int64_t tick) noexcept;
     /// Fills the port with the activations of the call, due at steady time `due_ns`. Wait-free.
     virtual void hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept;
@@ -123,9 +123,9 @@ public:
     /// True if the values of the call are not published on `link`.
     virtual bool drops(const Link& link, std::int64_t tick, int frames) noexcept;
     /// Sends the device its force, which is within its limits, and the motor speeds of its port.
-    virtual void commit(build::DeviceSlot& slot) noexcept = 0;
+    virtual void commit(io::DeviceSlot& slot) noexcept = 0;
     /// Sends zero force to the device, through its guard.
-    void let_rest(build::DeviceSlot& slot) noexcept;
+    void let_rest(io::DeviceSlot& slot) noexcept;
     /// Notifies that all activations before `tick` are complete.
     virtual void pass(std::int64_t tick) noexcept;
 
@@ -137,7 +137,7 @@ protected:
     /// True if `index` is older than the wanted one, unless the producer has ended: `last` is its last activation.
     static bool is_late(const Link& link, std::int64_t index, std::int64_t last, std::int64_t tick) noexcept;
     /// Reads the device itself.
-    void sample(build::DeviceSlot& slot, Flicks elapsed) noexcept;
+    void sample(io::DeviceSlot& slot, Flicks elapsed) noexcept;
     void note_heard(const io::SoundHeard& heard, std::int64_t tick, int frames) noexcept;
 
     DecisionLog& log_;

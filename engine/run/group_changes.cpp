@@ -20,7 +20,7 @@ void GroupRuntime::apply_pause() noexcept {
 
 void GroupRuntime::rest() noexcept {
     if (!program_) return;  // made by an edit while the run stands
-    for (build::DeviceSlot* slot : program_->driven) decisions_->let_rest(*slot);
+    for (io::DeviceSlot* slot : program_->driven) decisions_->let_rest(*slot);
 }
 
 void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
@@ -28,7 +28,7 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     if (program_) {
         fades_for_plan_ = has_let_go_ = false;
         program_->ran = ran_;
-        for (build::DeviceSlot* slot : program_->driven) slot->guard.set_driven(false);
+        for (io::DeviceSlot* slot : program_->driven) slot->guard.set_driven(false);
         for (build::PublishedOutput& output : next.published) {
             if (output.before < 0) continue;
             const build::PublishedOutput& old = program_->published[static_cast<std::size_t>(output.before)];
@@ -52,7 +52,7 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     for (Link* link : next.new_inputs) link->take_over();
     for (Link* link : next.new_outputs) link->begin_at(next_);
     for (std::size_t i = 0; i < next.driven.size(); ++i) {
-        build::DeviceSlot* const slot = next.driven[i];
+        io::DeviceSlot* const slot = next.driven[i];
         slot->guard.set_driven(true);
         slot->overdue = -1;  // of the sources of the program before
         if (next.is_new_path[i]) slot->settled = next_ * plan->period + next.warm_ups[i];
@@ -95,7 +95,7 @@ bool GroupRuntime::is_let_go() noexcept {
     if (!gate) return true;
     if (fades_for_plan_ && !has_let_go_ && upcoming_->changes_force) {
         // At least one tick has run since the fade began, which is long enough for a force of zero to stay so.
-        has_let_go_ = std::ranges::all_of(program_->driven, [](const build::DeviceSlot* slot) {
+        has_let_go_ = std::ranges::all_of(program_->driven, [](const io::DeviceSlot* slot) {
             return slot->port.wrench.force == Vec3(0.0) && slot->port.wrench.torque == Vec3(0.0);
         });
         if (has_let_go_) gate->closed_by.fetch_sub(1, std::memory_order_acq_rel);

@@ -68,12 +68,12 @@ bool GroupRuntime::ready() const noexcept {
 void GroupRuntime::acquire(int frames) noexcept {
     for (io::SoundHeard* heard : program_->heard) decisions_->hear(*heard, next_, frames, due_ns);
     const Flicks elapsed = last_ < 0 ? 0 : (next_ - last_) * plan->period;
-    for (build::DeviceSlot* slot : program_->devices) decisions_->acquire(*slot, next_, elapsed);
+    for (io::DeviceSlot* slot : program_->devices) decisions_->acquire(*slot, next_, elapsed);
 }
 
 void GroupRuntime::check_sources() noexcept {
     for (std::size_t i = 0; i < program_->driven.size(); ++i) {
-        build::DeviceSlot& slot = *program_->driven[i];
+        io::DeviceSlot& slot = *program_->driven[i];
         slot.port.hold_off = fades_for_plan_ || is_paused_ || now < slot.settled;
         const std::vector<build::ValueSource>& sources = program_->sources[i];
         slot.overdue = decisions_->overdue(slot, sources, next_);
@@ -176,14 +176,14 @@ int GroupRuntime::finish_call() noexcept {
     }
     committing_ = n;
     double largest = 0.0;
-    for (build::DeviceSlot* slot : program_->driven) {
+    for (io::DeviceSlot* slot : program_->driven) {
         // The node that wrote it reads here what the device was given.
         slot->port.wrench = io::clamp_to_device(slot->port.wrench, slot->port.info);
         largest = std::max(largest, glm::length(slot->port.wrench.force));
     }
     telemetry.note_force(largest);
     for (std::size_t i = 0; i < program_->driven.size(); ++i) {
-        build::DeviceSlot* const slot = program_->driven[i];
+        io::DeviceSlot* const slot = program_->driven[i];
         std::string_view source;
         if (slot->overdue >= 0 && slot->port.fault == slot->port.overdue)
             source = program_->sources[i][static_cast<std::size_t>(slot->overdue)].name;
@@ -233,7 +233,7 @@ void GroupRuntime::end_at(std::int64_t tick) noexcept {
     end.store(std::min(end.load(), tick));
     log.note(take::TimingKind::end, next_, {});
     if (program_)
-        for (build::DeviceSlot* slot : program_->devices) slot->guard.retire();
+        for (io::DeviceSlot* slot : program_->devices) slot->guard.retire();
     // From here on nothing of the group is touched by its thread.
     over_.store(true, std::memory_order_release);
 }

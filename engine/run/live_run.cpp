@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t longest_block_ns = 200'000'000;
 
 /// How old the last force may be before the watchdog fades it: 3 ms, or three ticks of a slower device.
-std::int64_t commit_limit_ns(const build::DeviceSlot& slot, double dilate) {
+std::int64_t commit_limit_ns(const io::DeviceSlot& slot, double dilate) {
     const double ticks = 3e9 / rate_of(slot.period);
     return std::llround(std::max(3e6, ticks) * std::max(1.0, dilate));
 }
@@ -104,7 +104,7 @@ void LiveRun::service() {
     if (options_.watch) options_.watch();
 }
 
-void LiveRun::guard(const std::vector<std::unique_ptr<build::DeviceSlot>>& devices) {
+void LiveRun::guard(const std::vector<std::unique_ptr<io::DeviceSlot>>& devices) {
     for (const auto& slot : devices) {
         slot->guard.set_limit(commit_limit_ns(*slot, options_.dilate));
         watchdog_.watch(*slot);

@@ -74,7 +74,7 @@ private:
     bool pauses(const GroupRuntime& group) const;
     bool is_over(const GroupRuntime& group) const;
     void prepare_threads(const build::Generation& next);
-    void guard(const std::vector<std::unique_ptr<build::DeviceSlot>>& devices);
+    void guard(const std::vector<std::unique_ptr<io::DeviceSlot>>& devices);
 
     /// Thread of the watchdog: a stop and a pause are started from here, even if the control thread is busy.
     void look() noexcept;

@@ -107,13 +107,13 @@ bool ReplayedDecisions::may_begin(const std::vector<Link*>&, std::int64_t) const
     return true;
 }
 
-void ReplayedDecisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept {
+void ReplayedDecisions::acquire(io::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept {
     if (const TimingRecord* logged = find(TimingKind::device_sample, slot.id, tick)) slot.port.sample = logged->sample;
     else sample(slot, elapsed);
     log_.note(TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
 }
 
-int ReplayedDecisions::overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+int ReplayedDecisions::overdue(const io::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
                                std::int64_t tick) noexcept {
     const TimingRecord* const record = find(TimingKind::overdue, slot.id, tick);
     const std::int64_t now = record ? record->value : slot.overdue;
@@ -146,7 +146,7 @@ bool ReplayedDecisions::drops(const Link& link, std::int64_t tick, int) noexcept
     return find(TimingKind::dropped, link.id, tick) != nullptr;
 }
 
-void ReplayedDecisions::commit(build::DeviceSlot&) noexcept {}
+void ReplayedDecisions::commit(io::DeviceSlot&) noexcept {}
 
 void ReplayedDecisions::pass(std::int64_t tick) noexcept {
     for (const TimingRecord* r = records_.at(first_); r && r->tick + std::max(r->count, 1) <= tick;)

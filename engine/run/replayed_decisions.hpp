@@ -30,13 +30,13 @@ public:
     std::int64_t awaited(const Link& link, std::int64_t tick) const noexcept override;
     bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept override;
     bool may_begin(const std::vector<Link*>& links, std::int64_t tick) const noexcept override;
-    void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept override;
-    int overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+    void acquire(io::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept override;
+    int overdue(const io::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
                 std::int64_t tick) noexcept override;
     void hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept override;
     LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
     bool drops(const Link& link, std::int64_t tick, int frames) noexcept override;
-    void commit(build::DeviceSlot& slot) noexcept override;
+    void commit(io::DeviceSlot& slot) noexcept override;
     void pass(std::int64_t tick) noexcept override;
 
 private:

@@ -33,10 +33,10 @@ void Watchdog::begin() {
     twin_ = made_thread("that watches over the run without real-time priority", [this] { run_twin(); });
 }
 
-void Watchdog::watch(build::DeviceSlot& slot) {
+void Watchdog::watch(io::DeviceSlot& slot) {
     const std::size_t count = count_.load(std::memory_order_relaxed);
     if (count == watches_.size()) throw Error(fmt::format("more than {} haptic devices in one run", watches_.size()));
-    watches_[count] = std::make_unique<io::DeviceWatch>(slot);
+    watches_[count] = std::make_unique<DeviceWatch>(slot);
     count_.store(count + 1, std::memory_order_release);
 }
 

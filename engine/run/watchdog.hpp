@@ -5,7 +5,7 @@
 // normal priority takes over.
 #pragma once
 
-#include "engine/io/device_watch.hpp"
+#include "engine/run/device_watch.hpp"
 
 #include <array>
 #include <atomic>
@@ -31,7 +31,7 @@ public:
     /// Starts the thread. Throws std::system_error when the system refuses it.
     void begin();
     /// Adds a device. Throws Error if there are too many, std::system_error when the system refuses the thread.
-    void watch(build::DeviceSlot& slot);
+    void watch(io::DeviceSlot& slot);
     /// Removes the devices added last, which were never used, until `count` are left.
     void forget_beyond(std::size_t count);
     std::size_t watched() const { return count_.load(std::memory_order_relaxed); }
@@ -50,7 +50,7 @@ private:
     void look_once() noexcept;
 
     std::function<void()> look_;
-    std::array<std::unique_ptr<io::DeviceWatch>, 32> watches_;
+    std::array<std::unique_ptr<DeviceWatch>, 32> watches_;
     std::atomic<std::size_t> count_{0};
     std::atomic<bool> ending_{false};
     std::atomic<bool> is_looking_{false};

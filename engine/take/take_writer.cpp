@@ -187,7 +187,7 @@ void TakeWriter::record(const TimingRecord& record) {
     }
 }
 
-void TakeWriter::device(const build::DeviceSlot& slot) {
+void TakeWriter::device(const io::DeviceSlot& slot) {
     const DeviceInfo& info = slot.port.info;
     line(Json{{"device", slot.name},
               {"info",

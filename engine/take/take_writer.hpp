@@ -56,7 +56,7 @@ public:
 
     /// Sets the first plan; call before anything is recorded.
     void begin(const patch::Patch& patch, std::uint64_t plan_hash);
-    void device(const build::DeviceSlot& slot);
+    void device(const io::DeviceSlot& slot);
     /// Returns the sink for the frames of a group: files of at most `max_channels` channels, opened at the first
     /// frame.
     std::unique_ptr<io::Sink> sink(const io::FrameLayout& layout, const run::GroupRuntime& group);

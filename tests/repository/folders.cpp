@@ -65,10 +65,8 @@ TEST_CASE("two folders include each other in one direction only") {
     const std::set<std::pair<std::string, std::string>> known{
         {"devices/driver", "devices/haptic"},   {"devices/driver", "devices/hosted"},
         {"devices/gripper", "devices/haptic"},  {"devices/haptic", "devices/hosted"},
-        {"devices/haptic", "devices/spacenav"}, {"dsp/contact", "dsp/geometry"},
-        {"dsp/geometry", "dsp/volume"},         {"engine/build", "engine/io"},
-        {"engine/build", "engine/run"},         {"engine/io", "engine/run"},
-        {"engine/run", "engine/take"},          {"graph/compile", "graph/patch"}};
+        {"devices/haptic", "devices/spacenav"}, {"dsp/geometry", "dsp/volume"},
+        {"engine/build", "engine/run"},         {"engine/run", "engine/take"}};
     const auto all = included_folders();
     REQUIRE(all.size() > 40);
     std::set<std::pair<std::string, std::string>> found;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/patch_measure.hpp"
 
-#include "graph/patch/patch_parts.hpp"
+#include "graph/compile/patch_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@ const std::string sweep_name = "measure_sweep", record_name = "measure_record";
 }  // namespace
 
 MeasuredPatch measured_patch(const patch::Patch& patch, const MeasuredPath& path, compile::Catalogue catalogue) {
-    const patch::SignalEnd in = patch::find_signal(patch, path.in, "--in", catalogue),
-                           out = patch::find_signal(patch, path.out, "--out", catalogue);
+    const compile::SignalEnd in = compile::find_signal(patch, path.in, "--in", catalogue),
+                             out = compile::find_signal(patch, path.out, "--out", catalogue);
     const SourceLocation where{fmt::format("--in {} --out {}", path.in, path.out), 0, 0};
     if (out.is_input) throw Error(where, fmt::format("'{}' is an input; --out must be an output", path.out));
     if (in.node->group != out.node->group ||
@@ -45,7 +45,7 @@ MeasuredPatch measured_patch(const patch::Patch& patch, const MeasuredPath& path
     measured.wires.push_back({out.node->name, out.port, record_name, "in", patch::WireMode::hold, false, 0, where});
     measured.nodes.push_back(std::move(sweep));
     measured.nodes.push_back(std::move(record));
-    patch::keep_what_leads_to({record_name}, measured);
+    compile::keep_what_leads_to({record_name}, measured);
     if (std::ranges::find(measured.nodes, sweep_name, &patch::PatchNode::name) == measured.nodes.end())
         throw Error(where, fmt::format("no wires lead from '{}' to '{}'", path.in, path.out));
     return made;

@@ -2,7 +2,7 @@
 #include "tools/analysis/patch_steady.hpp"
 
 #include "dsp/core/units.hpp"
-#include "graph/patch/patch_parts.hpp"
+#include "graph/compile/patch_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -63,7 +63,7 @@ SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const s
         throw Error(where,
                     "no port is recorded as handle.wav and the number of actuators is not one; name the port of the "
                     "handle's vibration with --out NODE.PORT");
-    if (patch::find_signal(patch, path.out, "--out", catalogue).is_input)
+    if (compile::find_signal(patch, path.out, "--out", catalogue).is_input)
         throw Error(SourceLocation{"--out " + path.out, 0, 0}, "this is an input; name an output");
     if (actuator) path.drive = actuator->name + ".voltage";
     return path;
@@ -96,7 +96,7 @@ SteadyPatch steady_patch(const patch::Patch& patch, const SawPath& path, const S
     p.nodes.push_back(std::move(load));
     std::vector<std::string> recorders{out_name};
     const auto record = [&](const std::string& name, const std::string& from) {
-        const patch::SignalEnd end = patch::find_signal(patch, from, "--out", catalogue);
+        const compile::SignalEnd end = compile::find_signal(patch, from, "--out", catalogue);
         p.nodes.push_back({name, "record", end.node->rate, end.node->group, where, where, where, {}});
         p.wires.push_back({end.node->name, end.port, name, "in", patch::WireMode::hold, false, 0, where});
     };
@@ -106,7 +106,7 @@ SteadyPatch steady_patch(const patch::Patch& patch, const SawPath& path, const S
         recorders.push_back(drive_name);
         made.drive_file = drive_name + ".wav";
     }
-    patch::keep_what_leads_to(recorders, p);
+    compile::keep_what_leads_to(recorders, p);
     if (std::ranges::find(p.nodes, path.saw, &patch::PatchNode::name) == p.nodes.end())
         throw Error(where, fmt::format("no wires lead from '{}' to '{}'", path.saw, path.out));
     return made;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/registration/registration.hpp"
 
+#include "dsp/contact/neighbours.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/geometry/main_axes.hpp"
-#include "dsp/geometry/neighbours.hpp"
 #include "dsp/geometry/symmetric6.hpp"
 
 #include <glm/geometric.hpp>
@@ -395,7 +395,7 @@ namespace {
 /// The connected patch of marked points (gaps below `gap`) with the greatest area.
 std::vector<std::size_t> largest_patch(std::span<const contact::SurfacePoint> points, const std::vector<char>& marked,
                                        double gap) {
-    const auto patches = geometry::patches_of(points, gap, [&](std::size_t n) { return marked[n] != 0; });
+    const auto patches = contact::patches_of(points, gap, [&](std::size_t n) { return marked[n] != 0; });
     const auto area_of = [&](const std::vector<std::size_t>& patch) {
         double area = 0.0;
         for (const std::size_t n : patch) area += points[n].area;
@@ -413,7 +413,7 @@ std::vector<std::size_t> displaced_region(std::span<const contact::SurfacePoint>
     for (std::size_t n = 0; n < moving.size(); ++n) is_away[n] = fixed.distance(pose.apply(moving[n].position)) > away;
     const auto largest = largest_patch(moving, is_away, gap);
     std::vector<char> taken(moving.size(), 0);
-    const geometry::Neighbours neighbours(moving, std::max(margin, 1e-9));
+    const contact::Neighbours neighbours(moving, std::max(margin, 1e-9));
     for (const std::size_t n : largest) neighbours.around(n, [&](std::size_t m) { taken[m] = 1; });
     std::vector<std::size_t> region;
     for (std::size_t n = 0; n < taken.size(); ++n)

@@ -103,7 +103,7 @@ Felt felt_live(const std::string& fault) {
         }
     };
     engine.run_live(live);
-    const build::DeviceSlot& slot = *engine.host().devices.at(0);
+    const io::DeviceSlot& slot = *engine.host().devices.at(0);
     felt.fault = slot.port.fault;
     felt.state = slot.port.state;
     return felt;

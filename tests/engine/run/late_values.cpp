@@ -105,7 +105,7 @@ TEST_CASE("a value of force is overdue after 3 ms or one period, one of the worl
     run::ChangeQueue changes;
     const run::PauseWindow pause;
     run::LiveDecisions decisions(log, period, changes, pause);
-    const build::DeviceSlot slot;
+    const io::DeviceSlot slot;
     for (const Flicks source_period : {ms / 4, ms, 2 * ms, 16 * ms, 250 * ms})
         for (const std::int64_t computed : {0, 1, 7, 1000}) {
             CAPTURE(source_period, computed);

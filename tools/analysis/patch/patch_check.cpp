@@ -38,7 +38,7 @@ double energy_bound(const build::LiveNode& node, const std::vector<analyse::Forc
         if (loop.to == node.name)
             stiffness = std::max(
                 stiffness, loop.declared ? loop.declared->newton_per_metre : std::numeric_limits<double>::infinity());
-    const build::DeviceSlot& slot = *node.uses.devices.front().first;
+    const io::DeviceSlot& slot = *node.uses.devices.front().first;
     const double stated = slot.port.info.max_force, given = node.params.at("max_force")->value;
     return control::EnergyCap::max_gain(nodes::cap_settings(slot.port.info, seconds(slot.period)), stiffness,
                                         stated > 0.0 ? std::min(stated, given) : given);

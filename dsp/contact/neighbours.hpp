@@ -15,15 +15,15 @@
 #include <span>
 #include <vector>
 
-namespace tactus::geometry {
+namespace tactus::contact {
 
 /// Surface points sorted into cubes; a binary search finds those within one cube side of a point.
 class Neighbours {
 public:
     /// `points` must outlive this object and must not move; `side` in m.
-    Neighbours(std::span<const contact::SurfacePoint> points, double side) : points_(points), side_(side) {
+    Neighbours(std::span<const SurfacePoint> points, double side) : points_(points), side_(side) {
         Vec3 low(std::numeric_limits<double>::infinity());
-        for (const contact::SurfacePoint& p : points) low = glm::min(low, p.position);
+        for (const SurfacePoint& p : points) low = glm::min(low, p.position);
         // A margin of one cube keeps all indices positive.
         origin_ = low - Vec3(2.0 * side);
         for (std::size_t i = 0; i < points.size(); ++i) sorted_.push_back({key_of(cell(points[i].position)), i});
@@ -58,7 +58,7 @@ private:
                static_cast<std::uint64_t>(c.z) << 42;
     }
 
-    std::span<const contact::SurfacePoint> points_;
+    std::span<const SurfacePoint> points_;
     double side_;
     Vec3 origin_{0.0};
     std::vector<Entry> sorted_;
@@ -67,7 +67,7 @@ private:
 /// Connected components of the points that satisfy a condition; points within `side` of each other are neighbours. One
 /// list of indices per component, ordered by first point.
 template <class Condition>
-std::vector<std::vector<std::size_t>> patches_of(std::span<const contact::SurfacePoint> points, double side,
+std::vector<std::vector<std::size_t>> patches_of(std::span<const SurfacePoint> points, double side,
                                                  const Condition& belongs) {
     const Neighbours neighbours(points, side);
     std::vector<bool> seen(points.size(), false);
@@ -87,4 +87,4 @@ std::vector<std::vector<std::size_t>> patches_of(std::span<const contact::Surfac
     return patches;
 }
 
-}  // namespace tactus::geometry
+}  // namespace tactus::contact

@@ -8,21 +8,20 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus::patch {
+namespace tactus::compile {
 
 /// A signal port of a node.
 struct SignalEnd {
-    const PatchNode* node = nullptr;  ///< points into the patch
+    const patch::PatchNode* node = nullptr;  ///< points into the patch
     std::string port, unit;
     bool is_input = false;
 };
 
 /// Returns the port named by text such as "actuator.signal". `option` is the command-line option, for messages. Throws
 /// Error if the port does not exist or carries no signal.
-SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option,
-                      compile::Catalogue catalogue);
+SignalEnd find_signal(const patch::Patch& patch, const std::string& text, std::string_view option, Catalogue catalogue);
 
 /// Removes all nodes except those of `names` and the nodes upstream of them. Keeps the order.
-void keep_what_leads_to(std::vector<std::string> names, Patch& patch);
+void keep_what_leads_to(std::vector<std::string> names, patch::Patch& patch);
 
-}  // namespace tactus::patch
+}  // namespace tactus::compile

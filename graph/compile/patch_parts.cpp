@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/patch/patch_parts.hpp"
+#include "graph/compile/patch_parts.hpp"
 
 #include "graph/patch/sub_patch.hpp"
 
@@ -10,7 +10,7 @@
 #include <unordered_set>
 #include <utility>
 
-namespace tactus::patch {
+namespace tactus::compile {
 
 namespace {
 
@@ -52,28 +52,28 @@ private:
 
 }  // namespace
 
-SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option,
-                      compile::Catalogue catalogue) {
+SignalEnd find_signal(const patch::Patch& patch, const std::string& text, std::string_view option,
+                      Catalogue catalogue) {
     const SourceLocation where{fmt::format("{} {}", option, text), 0, 0};
     const std::size_t dot = text.find('.');
     if (dot == std::string::npos || dot == 0 || dot + 1 == text.size()) throw Error(where, "write NODE.PORT");
-    const std::vector<NamedEnd> ends = ends_within(patch, text.substr(0, dot), text.substr(dot + 1));
+    const std::vector<patch::NamedEnd> ends = patch::ends_within(patch, text.substr(0, dot), text.substr(dot + 1));
     if (ends.size() > 1) {
         std::string several;
-        for (const NamedEnd& end : ends)
+        for (const patch::NamedEnd& end : ends)
             several += fmt::format("{}{}.{}", several.empty() ? "" : ", ", end.node, end.name);
         throw Error(where, fmt::format("'{}' leads to several ports; name one of them: {}", text, several));
     }
     const auto& [name, port] = ends.front();
-    const auto node = std::ranges::find(patch.nodes, name, &PatchNode::name);
+    const auto node = std::ranges::find(patch.nodes, name, &patch::PatchNode::name);
     if (node == patch.nodes.end()) {
         std::vector<std::string> names;
-        for (const PatchNode& n : patch.nodes) names.push_back(n.name);
+        for (const patch::PatchNode& n : patch.nodes) names.push_back(n.name);
         throw Error(where, fmt::format("no node '{}'{}", name, did_you_mean(name, names)));
     }
     const auto type = std::ranges::find(catalogue, node->type, [](const NodeType* t) { return t->name; });
     if (type == catalogue.end()) throw Error(where, fmt::format("node '{}' has an unknown type", name));
-    const compile::NodeInstance instance((*type)->create(), (*type)->destroy);
+    const NodeInstance instance((*type)->create(), (*type)->destroy);
     OpenOutputs open;
     (*type)->visit(instance.get(), open);
     SignalPorts ports(port, open.found);
@@ -87,9 +87,9 @@ SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_v
     return {&*node, port, ports.unit, ports.is_input};
 }
 
-void keep_what_leads_to(std::vector<std::string> kept, Patch& patch) {
+void keep_what_leads_to(std::vector<std::string> kept, patch::Patch& patch) {
     std::unordered_map<std::string, std::vector<std::string>> sources;  // of each node
-    for (const PatchWire& wire : patch.wires) sources[wire.to_node].push_back(wire.from_node);
+    for (const patch::PatchWire& wire : patch.wires) sources[wire.to_node].push_back(wire.from_node);
     std::unordered_set<std::string> known(kept.begin(), kept.end());
     while (!kept.empty()) {
         const std::string node = std::move(kept.back());
@@ -98,8 +98,8 @@ void keep_what_leads_to(std::vector<std::string> kept, Patch& patch) {
             if (known.insert(source).second) kept.push_back(source);
     }
     const auto is_dropped = [&](const std::string& name) { return !known.contains(name); };
-    std::erase_if(patch.nodes, [&](const PatchNode& node) { return is_dropped(node.name); });
-    std::erase_if(patch.wires, [&](const PatchWire& wire) { return is_dropped(wire.to_node); });
+    std::erase_if(patch.nodes, [&](const patch::PatchNode& node) { return is_dropped(node.name); });
+    std::erase_if(patch.wires, [&](const patch::PatchWire& wire) { return is_dropped(wire.to_node); });
 }
 
-}  // namespace tactus::patch
+}  // namespace tactus::compile

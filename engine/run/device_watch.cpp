@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/io/device_watch.hpp"
+#include "engine/run/device_watch.hpp"
 
 #include "dsp/core/clock.hpp"
 #include "engine/run/made_thread.hpp"
@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace tactus::io {
+namespace tactus::run {
 
 namespace {
 
@@ -19,8 +19,8 @@ constexpr int priority = 85;  // above every group
 
 }  // namespace
 
-DeviceWatch::DeviceWatch(build::DeviceSlot& slot)
-    : slot_(slot), thread_(run::made_thread("that guards the device " + slot.name, [this] { run(); })) {}
+DeviceWatch::DeviceWatch(io::DeviceSlot& slot)
+    : slot_(slot), thread_(made_thread("that guards the device " + slot.name, [this] { run(); })) {}
 
 DeviceWatch::~DeviceWatch() {
     end(true);
@@ -72,4 +72,4 @@ void DeviceWatch::run() noexcept {
     is_over_.store(true, std::memory_order_release);
 }
 
-}  // namespace tactus::io
+}  // namespace tactus::run

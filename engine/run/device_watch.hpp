@@ -4,26 +4,26 @@
 // a thread of normal priority takes over.
 #pragma once
 
-#include "engine/build/group_program.hpp"
+#include "engine/io/device_slot.hpp"
 #include "engine/io/driver_gate.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <thread>
 
-namespace tactus::io {
+namespace tactus::run {
 
 /// All functions: control thread.
 class DeviceWatch {
 public:
     /// Throws std::system_error when the system refuses the thread.
-    explicit DeviceWatch(build::DeviceSlot& slot);
+    explicit DeviceWatch(io::DeviceSlot& slot);
     /// Joins the thread, unless it was abandoned.
     ~DeviceWatch();
     DeviceWatch(const DeviceWatch&) = delete;
     DeviceWatch& operator=(const DeviceWatch&) = delete;
 
-    build::DeviceSlot& slot() const { return slot_; }
+    io::DeviceSlot& slot() const { return slot_; }
     /// Ends the thread as soon as the retired device is without force, at the latest after 0.1 s; with `at_once`
     /// immediately.
     void end(bool at_once = false) noexcept;
@@ -39,8 +39,8 @@ private:
     /// One check, by one of the two threads at a time. Returns false as `stand_in` does.
     bool look(std::int64_t now_ns) noexcept;
 
-    build::DeviceSlot& slot_;
-    DriverGate driver_;
+    io::DeviceSlot& slot_;
+    io::DriverGate driver_;
     enum Ending : int { no, soon, now };
     std::atomic<int> ending_{no};
     std::atomic<bool> is_looking_{false};
@@ -49,4 +49,4 @@ private:
     std::thread thread_;
 };
 
-}  // namespace tactus::io
+}  // namespace tactus::run
