@@ -28,7 +28,7 @@ void check(const Bone& bone) {
     if (a.size != b.size || a.origin != b.origin || a.spacing != b.spacing)
         throw Error("a bone's distance and density must be on the same grid");
     if (a.size[0] < 1 || a.size[1] < 1 || a.size[2] < 1 || a.values.size() != a.count() || b.values.size() != b.count())
-        throw Error("a bone's grids must hold as many values as their size says, and at least one");
+        throw Error("a bone's grids must hold as many values as their size states, and at least one");
 }
 
 void check(std::span<const Bone> bones) {

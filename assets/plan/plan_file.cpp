@@ -310,7 +310,7 @@ CasePlan read_plan_text(std::string_view text, const std::string& file) {
     const Json json = parsed(text, file);
     const Item top(json, "", file);
     if (!top.has("format") || json["format"] != format_name)
-        throw Error(fmt::format("{}: is not a plan; a plan says \"format\": \"{}\"", file, format_name));
+        throw Error(fmt::format("{}: is not a plan; a plan has \"format\": \"{}\"", file, format_name));
     if (const Json& version = top.at("version"); version != plan_file_version)
         throw Error(fmt::format("{}: the plan has version {}, but this program reads version {}; nothing was changed",
                                 file, version.dump(), plan_file_version));

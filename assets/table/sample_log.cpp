@@ -324,7 +324,7 @@ private:
         if (kind_of(field) == CellKind::lost) return std::nullopt;
         const bool is_header = column < shape_.names.size() && as_utf8(field) == shape_.names[column];
         fail(column, is_header
-                         ? fmt::format("the names of the columns come again, as if the logger was started anew; "
+                         ? fmt::format("the names of the columns come again, as if the logger was restarted; "
                                        "cut the file there")
                          : fmt::format("'{}' in field {} is not a number", as_utf8(field.substr(0, 40)), column + 1));
     }

@@ -63,7 +63,7 @@ std::pair<fs::path, file::Json> without(std::string_view driver, const Opened& d
         throw Error(
             "the device states no serial number, so nothing can be kept of it; give one with the option 'serial'");
     const fs::path path = confirmations_file();
-    if (path.empty()) throw Error("neither XDG_CONFIG_HOME nor HOME says where to keep what you confirm");
+    if (path.empty()) throw Error("neither XDG_CONFIG_HOME nor HOME is set, so the confirmation cannot be stored");
     file::Json all = read(path), rest = file::Json::array();
     for (const file::Json& entry : all[list])
         if (!is_of(entry, driver, device)) rest.push_back(entry);

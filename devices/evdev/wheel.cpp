@@ -162,7 +162,7 @@ public:
             fmt::format("full torque {:.3g} N m, {}", settings_.max_torque,
                         settings_.states_torque ? "by option"
                                                 : "the strongest sold: give the option 'max_torque'; "
-                                                  "without it a weaker wheel gives less than it is told")};
+                                                  "without it, a weaker wheel gives less than requested")};
         opened.axes = 1;
         return opened;
     }

@@ -61,7 +61,7 @@ DhdApi::DhdApi(const std::string& library)
 
 std::string DhdApi::error() const {
     const char* const said = last_error ? last_error() : nullptr;
-    return said && *said ? fmt::format("the SDK says '{}'", said) : "the SDK does not say why";
+    return said && *said ? fmt::format("the SDK reports '{}'", said) : "the SDK gives no reason";
 }
 
 const Model* find_model(int type) {

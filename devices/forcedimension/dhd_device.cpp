@@ -83,7 +83,7 @@ public:
         step("read whether it is calibrated");
         look();
         if (mode_ == driver::OpenMode::reading) {
-            if (!is_calibrated_) step("wait for its calibration: move the handle as the maker's manual says");
+            if (!is_calibrated_) step("wait for its calibration: move the handle as in the maker's manual");
             return opened;
         }
         step("set its limits");

@@ -102,7 +102,7 @@ std::string refusal(std::string_view answer, std::string_view key) {
     if (header(answer, "sec-websocket-accept") != accept_for(key))
         return "it answers another greeting (Sec-WebSocket-Accept is wrong)";
     if (!header(answer, "sec-websocket-extensions").empty() || !header(answer, "sec-websocket-protocol").empty())
-        return "it wants an extension that nobody asked for";
+        return "it requires an extension that was not requested";
     return {};
 }
 

@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds longest_opening{2000};
 constexpr std::int64_t longest_silence_ns = 250'000'000, tell_again_ns = 5'000'000;
 constexpr int max_at_once = 64;
-constexpr const char* no_device = "the service knows no Inverse3; is it connected and switched on?";
+constexpr const char* no_device = "the service finds no Inverse3; is it connected and switched on?";
 
 struct Settings {
     std::string address;
@@ -137,7 +137,7 @@ private:
 
     InverseState first_state() {
         const std::int64_t until = steady_ns() + std::chrono::nanoseconds(longest_opening).count();
-        std::string why = "it says nothing";
+        std::string why = "it sends nothing";
         while (steady_ns() < until) {
             const auto heard = service_.receive(milliseconds(100));
             if (heard == WebSocket::Heard::closed) throw Error("the service hung up");

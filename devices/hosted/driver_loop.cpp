@@ -68,7 +68,7 @@ void DriverLoop::open() {
     const Received heard = receive(socket_, std::nullopt);
     std::span<const std::string> words = heard.said;
     if (heard.kind != Received::words || words.size() < 6 || words[0] != say_open)
-        throw Error("the engine says what cannot be understood");
+        throw Error("the engine sent an invalid message");
     const std::string driver = words[1], owner = words[2];
     words = words.subspan(3);
     const SourceLocation where = take_location(words);
@@ -99,7 +99,7 @@ void DriverLoop::open() {
 }
 
 void DriverLoop::prepare(const Words& said) {
-    if (said.front() != say_prepare || said.size() != 3) throw Error("the engine says what cannot be understood");
+    if (said.front() != say_prepare || said.size() != 3) throw Error("the engine sent an invalid message");
     const double period = number_of(said[1]);
     round_ns_ = std::max<std::int64_t>(std::llround(1e9 * number_of(said[2])), 20'000);
     // A slower engine commits less often; three ticks are what its own watchdog waits for.

@@ -100,7 +100,7 @@ void HostedDevice::wait_for(const char* reply, const haptic::PathResolver& resol
         }
         if (heard.kind == Received::closed) {
             process_->wait(farewell);
-            fail(process_->has_ended() ? how_it_ended() : "its process says what cannot be understood");
+            fail(process_->has_ended() ? how_it_ended() : "its process sent an invalid message");
         }
         const std::string& what = heard.said.front();
         if (what == reply) return;
@@ -108,7 +108,7 @@ void HostedDevice::wait_for(const char* reply, const haptic::PathResolver& resol
             process_->wait(farewell);  // it closes what it had opened
             throw error_of(heard.said);
         }
-        if (what != say_resolve || heard.said.size() != 2) fail("its process says what cannot be understood");
+        if (what != say_resolve || heard.said.size() != 2) fail("its process sent an invalid message");
         try {
             send(socket_.ours, {say_path, resolve(heard.said[1]).string()});
         } catch (const Error& error) {

@@ -143,7 +143,7 @@ public:
             api_->enable(max_force_clamping);
         }
         if (const std::string said = api_->pop_errors(); !said.empty())
-            throw Error(fmt::format("the device cannot be prepared: OpenHaptics says '{}'", said));
+            throw Error(fmt::format("the device cannot be prepared: OpenHaptics reports '{}'", said));
         step("read whether it is calibrated");
         look();
         if (!servo_->is_calibrated && mode_ == driver::OpenMode::run)

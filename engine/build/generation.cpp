@@ -82,7 +82,7 @@ void GenerationBuilder::form_groups() {
         made_->group_is_new.push_back(!runtime);
         if (!runtime) {
             if (context_.next_group > std::numeric_limits<std::uint16_t>::max())
-                throw Error("edits of this run have made more rate groups than its log can tell apart; start anew");
+                throw Error("edits of this run have made more rate groups than its log can number; restart the run");
             runtime = std::make_shared<run::GroupRuntime>(group, context_.next_group++, frames);
         }
         group_index_.emplace(runtime.get(), static_cast<int>(made_->groups.size()));

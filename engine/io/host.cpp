@@ -138,7 +138,7 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
     slot->name = name;
     if (recorded_) {
         const auto recorded = std::ranges::find(*recorded_, name, &RecordedDevice::name);
-        if (recorded == recorded_->end()) throw Error(where, fmt::format("the take knows no device '{}'", name));
+        if (recorded == recorded_->end()) throw Error(where, fmt::format("the take has no device '{}'", name));
         slot->device = std::make_unique<StandIn>(*recorded);
     } else if (describes_hardware_ && haptic::is_real_driver(request.driver)) {
         const haptic::HardwareOutline outline = hosted::describe_here(request, resolve);

@@ -99,14 +99,14 @@ void EngineHost::choose_source(SoundHeard& made, const SoundPlace& place, Flicks
     const bool has_card = live_ && audio_.device != "file" && audio_.device != "none";
     if (!has_card && !instead)
         throw Error(place.where,
-                    fmt::format("node '{}' hears a sound card, {}; give it a sound of [assets] to hear instead: file = "
+                    fmt::format("node '{}' reads from a sound card, {}; give it a sound of [assets] instead: file = "
                                 "\"NAME\"",
                                 place.name, live_ ? "and --audio names none" : "which only 'tactus run' has"));
     if (has_card) try {
             SoundCard& card = shared_card(period, place);
             if (place.channel > card.inputs())
                 throw Error(place.where,
-                            fmt::format("{} hears {} channels in this run; channel {} takes effect at the next start",
+                            fmt::format("{} reads {} channels in this run; channel {} takes effect at the next start",
                                         card.name(), card.inputs(), place.channel));
             made.card = &card;
             made.channel = place.channel - 1;
@@ -115,7 +115,7 @@ void EngineHost::choose_source(SoundHeard& made, const SoundPlace& place, Flicks
             if (!instead || audio_.is_required() || !error.where().file.empty())
                 throw Error(place.where, fmt::format("node '{}' has nothing to hear: {}", place.name, error.message()));
             opened_.notices.push_back(
-                fmt::format("no sound card ({}); node '{}' hears its file", error.message(), place.name));
+                fmt::format("no sound card ({}); node '{}' reads its file", error.message(), place.name));
         }
     made.file = std::move(*instead);
 }

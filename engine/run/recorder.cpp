@@ -55,7 +55,7 @@ void Recorder::keep_opened() {
 }
 
 void Recorder::want(bool wanted) {
-    if (!take_) throw Error("this run keeps no journal, so it cannot be recorded from here; begin it anew");
+    if (!take_) throw Error("this run keeps no journal, so it cannot be recorded from here; restart it");
     if (wanted && take_->is_lost()) throw Error(take_->loss());
     wants_ = wanted;
 }

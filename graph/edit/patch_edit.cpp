@@ -127,7 +127,7 @@ std::string start_of(const patch::PatchWire& wire) {
 void refuse_within(std::string_view name) {
     const std::size_t end = name.find(patch::within_node);
     if (end == std::string_view::npos) return;
-    throw Error(fmt::format("'{}' stands within '{}': edit the file of that patch, or set what it offers", name,
+    throw Error(fmt::format("'{}' is within '{}': edit the file of that patch, or set what it offers", name,
                             name.substr(0, end)));
 }
 

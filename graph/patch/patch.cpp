@@ -122,8 +122,7 @@ private:
     }
 
     void misplaced_wires(const toml::key& key, std::string_view table) {
-        problems_.add(at(key.source()),
-                      fmt::format("'wires' stands inside [{}]; move it above the first table", table));
+        problems_.add(at(key.source()), fmt::format("'wires' is inside [{}]; move it above the first table", table));
     }
 
     void wires(const toml::node& value) {
@@ -177,7 +176,7 @@ private:
             const std::string_view end = text ? std::string_view(text->get()) : "";
             const std::size_t dot = end.find('.');
             if (dot == std::string_view::npos || !is_name(end.substr(0, dot)) || !is_name(end.substr(dot + 1)))
-                return problems_.add(at(item), fmt::format("'{}' names what it stands for: \"node.{}\"", key.str(),
+                return problems_.add(at(item), fmt::format("'{}' must name what it controls: \"node.{}\"", key.str(),
                                                            table == "parameters" ? "parameter" : "port"));
             ends.push_back(
                 {std::string(key.str()), std::string(end.substr(0, dot)), std::string(end.substr(dot + 1)), at(item)});

@@ -22,7 +22,7 @@ struct ContactParameters {
         internal, "40 N/mm^3", "0 N/mm^3", "1000 N/mm^3",
         "contact stiffness per surface area: N/mm for each mm^2 that touches, for any spacing of the points"};
     Param point_stiffness{internal, "0 N/mm", "0 N/mm", "1000 N/mm",
-                          "contact stiffness per surface point, whatever area it stands for; if not 0 it replaces "
+                          "contact stiffness per surface point, regardless of its area; if not 0 it replaces "
                           "area_stiffness, and a body is stiffer the denser its points are"};
     Param blend{"0.03 mm", "0 mm", "1 mm", "half the width of the zone in which the force sets in smoothly"};
     Param saturation{"0 mm", "0 mm", "1 m", "depth at which the force of a point stops growing; 0: never"};

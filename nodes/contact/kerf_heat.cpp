@@ -39,7 +39,7 @@ struct KerfHeat {
     Param stroke_rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
     Param stroke{"3 mm", "0.5 mm", "20 mm", "of the teeth, peak to peak"};
     Param thrust_ratio{"1.6", "0.2", "10", "thrust over cutting force; 1.4 to 1.8 were measured on bone"};
-    Param contact{"15 mm", "1 mm", "80 mm", "length of the tooth line that cuts, unless 'teeth' says"};
+    Param contact{"15 mm", "1 mm", "80 mm", "length of the tooth line that cuts, if 'teeth' is not wired"};
     Flag irrigation{false, "water flows into the kerf, unless 'irrigated' is connected"};
     Param limit{"10 K", "1 K", "60 K", "rise above the body that counts as hot"};
     Param share{structural, "0.5", "0", "1",

@@ -15,7 +15,7 @@ struct Grasp {
     In<Pose> hand{"pose of the hand in the scene", "m"};
     In<tactus::coupling::Scene> scene{"the bodies that can be grasped"};
     In<bool> trigger{"true: hold"};
-    In<bool> release{optional, "true: release the body; the trigger must be pressed anew to hold again"};
+    In<bool> release{optional, "true: release the body; press the trigger again to hold it"};
     Out<double> held{"place of the held body in the scene until its force has faded; -1: none"};
     Out<Pose> grip{"pose of the body in the frame of the hand", "m"};
     Out<bool> holding{"true until the body is released"};

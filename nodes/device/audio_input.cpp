@@ -17,7 +17,7 @@ struct AudioInput {
         "card "
         "that have a channel. Offline, and without a card, it plays a file.";
 
-    Out<Signal> signal{"what it hears"};
+    Out<Signal> signal{"the recorded sound"};
     Text sensor{"", "name of an entry of [sensors], which has the settings that are not given here"};
     Text card{"", "part of the card's name; empty: the card of the run"};
     Param channel{structural, "1", "1", "64", "of the card"};

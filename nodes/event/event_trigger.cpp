@@ -12,8 +12,8 @@ struct EventTrigger {
     In<Event> in{"the events, of any number of wires"};
     Out<bool> trigger{
         "true for one tick at each event that counts. When one comes right after another, or two at once, false for a "
-        "tick stands between them, so that each one is seen; 16 may wait"};
-    Out<bool> gate{"true from a begin to an end, whatever 'on' says"};
+        "tick stands between them, so that each one is seen; up to 16 are queued"};
+    Out<bool> gate{"true from a begin to an end, regardless of 'on'"};
     EventChoice choice;
 
     void prepare(const Setup&) {

@@ -70,7 +70,7 @@ public:
             read_text(setup, unit, [](const std::string& text) { return formula::parse_measured_unit(text).measure; });
         if (!(compiled.measure == wanted))
             throw Error(unit.value.empty() ? formula.where : unit.where,
-                        "the formula gives " + compiled.measure.text() + ", but 'unit' says " + wanted.text());
+                        "the formula gives " + compiled.measure.text() + ", but 'unit' is " + wanted.text());
         check_wires(setup, names, compiled.program);
         has_ranges_ = false;
         for (std::size_t i = 0; i < count_; ++i) {

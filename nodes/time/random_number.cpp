@@ -8,7 +8,7 @@ namespace tactus::nodes {
 
 struct RandomNumber {
     static constexpr auto about =
-        "A random number, drawn anew when the trigger becomes true, or in each tick when it is not wired. The same "
+        "A random number, redrawn when the trigger becomes true, or in each tick when it is not wired. The same "
         "patch "
         "gives the same numbers; 'seed' gives others.";
 

@@ -140,7 +140,7 @@ TEST_CASE("a journal that grows too long is given up, and only recording is refu
     run_with(folder,
              {{0.8,
                [&](run::Engine& e) {
-                   CHECK_THROWS_WITH(e.record(true), Catch::Matchers::ContainsSubstring("begin it anew"));
+                   CHECK_THROWS_WITH(e.record(true), Catch::Matchers::ContainsSubstring("restart it"));
                    was_refused = true;
                    notices = e.host().notices;
                }}},

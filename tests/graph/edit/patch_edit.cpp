@@ -323,12 +323,11 @@ TEST_CASE("saving replaces the file at once, through a link too, and never over 
 TEST_CASE("what stands within a patch that is a node is edited in its own file") {
     using Catch::Matchers::ContainsSubstring;
     CHECK_THROWS_WITH(edit::with_setting(plain, "voice:tone", "frequency", "5 Hz"),
-                      ContainsSubstring("stands within 'voice'"));
-    CHECK_THROWS_WITH(edit::without_setting(plain, "voice:tone", "frequency"),
-                      ContainsSubstring("stands within 'voice'"));
-    CHECK_THROWS_WITH(edit::without_node(plain, "voice:tone"), ContainsSubstring("stands within 'voice'"));
-    CHECK_THROWS_WITH(edit::with_node_named(plain, "voice:tone", "b"), ContainsSubstring("stands within 'voice'"));
+                      ContainsSubstring("is within 'voice'"));
+    CHECK_THROWS_WITH(edit::without_setting(plain, "voice:tone", "frequency"), ContainsSubstring("is within 'voice'"));
+    CHECK_THROWS_WITH(edit::without_node(plain, "voice:tone"), ContainsSubstring("is within 'voice'"));
+    CHECK_THROWS_WITH(edit::with_node_named(plain, "voice:tone", "b"), ContainsSubstring("is within 'voice'"));
     CHECK_THROWS_WITH(edit::with_wire(plain, {"voice:tone.signal", "x.in", {}}),
-                      ContainsSubstring("stands within 'voice'"));
-    CHECK_THROWS_WITH(edit::without_wire(plain, "voice:tone.in"), ContainsSubstring("stands within 'voice'"));
+                      ContainsSubstring("is within 'voice'"));
+    CHECK_THROWS_WITH(edit::without_wire(plain, "voice:tone.in"), ContainsSubstring("is within 'voice'"));
 }

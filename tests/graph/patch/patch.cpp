@@ -92,8 +92,8 @@ TEST_CASE("what stands at the top by mistake is named, with the nearest key") {
 
 TEST_CASE("wires inside a table are told to move up") {
     CHECK(problems_of(with_hand("", "wires = [\"a.b -> c.d\"]\n")) ==
-          "p.toml:4:1: 'wires' stands inside [nodes.hand]; move it above the first table\n");
-    CHECK_THAT(problems_of(with_hand("[assets]\nwires = []\n")), ContainsSubstring("stands inside [assets]"));
+          "p.toml:4:1: 'wires' is inside [nodes.hand]; move it above the first table\n");
+    CHECK_THAT(problems_of(with_hand("[assets]\nwires = []\n")), ContainsSubstring("is inside [assets]"));
     CHECK_THAT(problems_of(with_hand("[groups.g]\nrate = \"1 Hz\"\nwires = []\n")),
                ContainsSubstring("inside [groups.g]"));
     CHECK_THAT(problems_of(with_hand("[devices.d]\ndriver = \"x\"\nwires = []\n")),

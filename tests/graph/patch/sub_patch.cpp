@@ -143,7 +143,7 @@ TEST_CASE("what is wrong with a patch within is said where it is written") {
         ContainsSubstring("pair.toml:2:6: no node 'y'"));
     CHECK_THAT(
         compiled(using_pair() + part("pair.toml", "[inputs]\nin = \"yin\"\n" + a_node("x", "stiff", "outer"))).said,
-        ContainsSubstring("pair.toml:2:6: 'in' names what it stands for"));
+        ContainsSubstring("pair.toml:2:6: 'in' must name what it controls"));
     CHECK_THAT(compiled(pair_text).said, ContainsSubstring("rate = \"outer\" is that of a node which is this patch"));
     CHECK_THAT(compiled("[nodes.a]\ntype = \"patch:\"\n").said, ContainsSubstring("name the file"));
 }

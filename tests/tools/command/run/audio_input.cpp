@@ -327,8 +327,9 @@ TEST_CASE("a card that cannot be heard offline, and a sensor that is not there, 
     const std::string file = folder.write("echo.toml", echo).string();
     const Outcome offline = folder.tactus("render " + file + " --seconds 0.1 --out " + (folder.path / "o").string());
     CHECK(offline.code == 2);
-    CHECK_THAT(offline.err, ContainsSubstring("node 'mic' hears a sound card, which only 'tactus run' has; give it a "
-                                              "sound of [assets] to hear instead"));
+    CHECK_THAT(offline.err,
+               ContainsSubstring("node 'mic' reads from a sound card, which only 'tactus run' has; give it a "
+                                 "sound of [assets] instead"));
     CHECK_THAT(offline.err, ContainsSubstring("echo.toml:6"));
     const Outcome none =
         folder.tactus("run " + file + " --seconds 0.1 --audio none --out " + (folder.path / "n").string());
