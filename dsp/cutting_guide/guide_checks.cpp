@@ -19,7 +19,7 @@ namespace {
 
 constexpr double opposite = -0.8660254037844386;  // cosine of 150°
 constexpr double path_length = 60.0 * mm, facing = 0.8, farthest_relief = 4.0 * mm, contact_margin = 0.1 * mm;
-constexpr int chunk = 2048;
+constexpr int chunk = 2048, sample = 32;  // facets of a job; every which is sampled first
 constexpr std::size_t supporting = 6;  // facets of a wall; fewer are folds of the mesh at a corner
 
 /// A triangle as its middle, unit normal and area.
@@ -46,41 +46,58 @@ void each_of(const geometry::TriangleSurface& surface, int job, const Each& each
     for (std::size_t t = first; t < last; ++t) each(facet(surface, t));
 }
 
+/// The largest ball that touches the facet at its middle, if it is below `most` wide and touches an opposite face.
+std::optional<ThinWall> wall_at(const geometry::TriangleTree& tree, const Facet& f, double most) {
+    double radius = 0.5 * most;
+    Vec3 centre = f.middle - radius * f.normal;
+    geometry::TriangleTree::Near near;
+    for (int round = 0; round < 40; ++round) {
+        const auto closer = tree.nearest(centre, radius * (1.0 - 1e-6));
+        if (!std::isfinite(closer.distance)) break;
+        near = closer;
+        const Vec3 to = f.middle - near.point;
+        const double along = glm::dot(to, f.normal);
+        if (!(along > 1e-9)) return {};  // the triangle itself or one beside it
+        radius = 0.5 * glm::dot(to, to) / along;
+        centre = f.middle - radius * f.normal;
+    }
+    if (!std::isfinite(near.distance) || near.normal == Vec3(0.0)) return {};
+    if (glm::dot(near.normal, f.normal) > opposite) return {};
+    return ThinWall{2.0 * radius, centre};
+}
+
 }  // namespace
 
 std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
                                       double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run) {
-    // Of each job its thinnest places, in order.
-    std::vector<std::vector<ThinWall>> found(static_cast<std::size_t>(jobs_of(surface)));
-    run(jobs_of(surface), [&](int job) {
-        auto& thin = found[static_cast<std::size_t>(job)];
-        each_of(surface, job, [&](const Facet& f) {
-            if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
-            double radius = 0.5 * (thin.size() < supporting ? most : thin.back().thickness);
-            Vec3 centre = f.middle - radius * f.normal;
-            geometry::TriangleTree::Near near;
-            for (int round = 0; round < 40; ++round) {
-                const auto closer = tree.nearest(centre, radius * (1.0 - 1e-6));
-                if (!std::isfinite(closer.distance)) break;
-                near = closer;
-                const Vec3 to = f.middle - near.point;
-                const double along = glm::dot(to, f.normal);
-                if (!(along > 1e-9)) return;  // the triangle itself or one beside it
-                radius = 0.5 * glm::dot(to, to) / along;
-                centre = f.middle - radius * f.normal;
-            }
-            if (!std::isfinite(near.distance) || near.normal == Vec3(0.0)) return;
-            if (glm::dot(near.normal, f.normal) > opposite) return;
-            const ThinWall wall{2.0 * radius, centre};
-            thin.insert(std::ranges::upper_bound(thin, wall.thickness, {}, &ThinWall::thickness), wall);
-            if (thin.size() > supporting) thin.pop_back();
+    // The thinnest places that `of_job` finds, in order, balls beginning at `widest`; empty: too few.
+    const auto thinnest = [&](int jobs, double widest, const auto& of_job) {
+        std::vector<std::vector<ThinWall>> found(static_cast<std::size_t>(jobs));
+        run(jobs, [&](int job) {
+            auto& thin = found[static_cast<std::size_t>(job)];
+            of_job(job, [&](const Facet& f) {
+                if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
+                const auto wall = wall_at(tree, f, thin.size() < supporting ? widest : thin.back().thickness);
+                if (!wall) return;
+                thin.insert(std::ranges::upper_bound(thin, wall->thickness, {}, &ThinWall::thickness), *wall);
+                if (thin.size() > supporting) thin.pop_back();
+            });
         });
+        std::vector<ThinWall> all;
+        for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
+        if (all.size() < supporting) return std::optional<ThinWall>{};
+        std::ranges::nth_element(all, all.begin() + (supporting - 1), {}, &ThinWall::thickness);
+        return std::optional(all[supporting - 1]);
+    };
+    // A sample bounds the result, so that the balls of the other facets begin small.
+    const auto sampled = thinnest((jobs_of(surface) + sample - 1) / sample, most, [&](int job, const auto& each) {
+        const std::size_t all = surface.triangles.size();
+        const auto end = std::min(all, (static_cast<std::size_t>(job) + 1) * chunk * sample);
+        for (std::size_t t = static_cast<std::size_t>(job) * chunk * sample; t < end; t += sample)
+            each(facet(surface, t));
     });
-    std::vector<ThinWall> all;
-    for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
-    if (all.size() < supporting) return {};
-    std::ranges::nth_element(all, all.begin() + (supporting - 1), {}, &ThinWall::thickness);
-    return all[supporting - 1];
+    const double widest = sampled ? std::min(most, 1.001 * sampled->thickness) : most;
+    return thinnest(jobs_of(surface), widest, [&](int job, const auto& each) { each_of(surface, job, each); });
 }
 
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
@@ -96,7 +113,7 @@ Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTre
         Part& part = parts[static_cast<std::size_t>(job)];
         int count = 0;
         each_of(guide, job, [&](const Facet& f) {
-            const auto near = bone.nearest(f.middle, 20.0 * mm);
+            const auto near = bone.nearest(f.middle, farthest_relief);
             part.least = std::min(part.least, near.distance);
             if (near.distance < farthest_relief && glm::dot(f.normal, near.point - f.middle) > facing * near.distance) {
                 if (std::abs(near.distance - offset) <= contact_margin) {

@@ -29,7 +29,7 @@ std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, 
 struct Seat {
     double contact_area = 0.0;  ///< m²: of the faces that look at the bone, at `offset` ± 0.1 mm from it
     double relieved_area = 0.0;  ///< m²: of those that are farther, up to 4 mm: undercuts of the approach
-    double min_distance = 0.0;  ///< m, of any part of the guide from the bone; negative values do not occur
+    double min_distance = 0.0;  ///< m, from the bone; infinite: no part is nearer than 4 mm; never negative
     bool is_path_free = true;  ///< no part meets bone on 60 mm along the removal, nor on the way back
     Vec3 blocked_at{0.0};  ///< where it does, on the guide
     double play = 0.0;  ///< m, of its middle, in the direction in which the bone holds it least

@@ -30,17 +30,20 @@ SeatedBone::SeatedBone(const geometry::TriangleSurface& bone, const geometry::Tr
     top_.assign(static_cast<std::size_t>(grid_.size[0]) * static_cast<std::size_t>(grid_.size[1]), nowhere);
     raise(bone);
     run(grid_.size[1], [&](int j) {
+        double at_top = infinity;  // distance of the highest sample of the column before
         for (int i = 0; i < grid_.size[0]; ++i) {
             const double top_here = top_[column(i, j)];
-            double least = cap, bound = infinity;
+            double least = cap, bound = at_top + 1.001 * spacing;
+            at_top = infinity;
             for (int k = grid_.size[2] - 1; k >= 0; --k) {
                 // Two samples below the surface are enough to find its place between samples.
                 const Vec3 p = grid_.position(i, j, k);
                 if (p.z < top_here - 2.0 * spacing) {
                     least = std::min(least, -spacing);
                 } else {
-                    // The distance of the sample above bounds that of this one, and shortens the search.
+                    // The distance of a sample beside bounds that of this one, and shortens the search.
                     const double away = tree.nearest(p, bound).distance;
+                    if (k == grid_.size[2] - 1) at_top = away;
                     bound = away + 1.001 * spacing;
                     least = std::min(least, p.z < top_here ? -away : away);
                     // None of these samples can come nearer than the cap.
