@@ -40,6 +40,7 @@ Verb segment_verb();
 Verb vessel_verb();
 Verb rope_verb();
 Verb reconstruct_verb();
+Verb guides_verb();
 Verb peers_verb();
 Verb fundamental_verb();
 Verb identify_verb();

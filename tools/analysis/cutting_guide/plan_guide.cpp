@@ -274,17 +274,44 @@ void warn_clinically(PlannedGuide& guide, const FlapStudy& study, const GuideCho
     }
 }
 
-void refuse(const PlannedGuide& guide, const mesh::MeshTopology& topology) {
-    const geometry::TriangleSurface& surface = guide.made.surface;
+}  // namespace
+
+const char* name_of(GuideBone bone) { return bone == GuideBone::fibula ? "fibula" : "jaw"; }
+
+GuideDesign design_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
+    GuideDesign design = choice.bone == GuideBone::fibula ? of_fibula(study, choice) : of_jaw(study, choice);
+    const Vec3 x = design.along;
+    bool to_right = false;
+    std::string side;
+    if (choice.bone == GuideBone::fibula) {
+        // The donor's line runs from the foot to the knee.
+        to_right = glm::dot(x, study.inputs().line_direction) < 0.0;
+        side = study.inputs().leg == reconstruction::Leg::left ? "L" : "R";
+    } else {
+        to_right = x.y < 0.0;
+        Vec3 middle(0.0);
+        for (const Vec3& v : design.bone.vertices) middle += v / static_cast<double>(design.bone.vertices.size());
+        const auto is_left = [&](const GuideCut& c) { return c.plane.origin.x > middle.x; };
+        side = std::ranges::all_of(design.cuts, is_left)    ? "L"
+               : std::ranges::none_of(design.cuts, is_left) ? "R"
+                                                            : "LR";
+    }
+    add_texts(design, title, choice, side, to_right);
+    return design;
+}
+
+void refuse_guide(const PlannedGuide& guide) {
+    const mesh::MeshTopology& topology = guide.topology;
     if (!topology.is_watertight())
         throw Error(fmt::format("the guide's mesh is not closed: {} open, {} crowded, {} flipped edges",
                                 topology.boundary_edges, topology.non_manifold_edges, topology.flipped_edges));
     if (!(guide.volume > 0.0)) throw Error("the guide's mesh is inside out");
-    if (guide.parts != 1)
-        throw Error(fmt::format(
-            "the guide falls into {} parts: choose another approach, a thicker base, or three sides", guide.parts));
-    if (const auto pairs = geometry::self_intersections(surface, 100, on_threads()); !pairs.empty())
-        throw Error(fmt::format("the guide's mesh intersects itself in {} places", pairs.size()));
+    if (topology.components != 1)
+        throw Error(
+            fmt::format("the guide falls into {} parts: choose another approach, a thicker base, or three sides",
+                        topology.components));
+    if (guide.intersections > 0)
+        throw Error(fmt::format("the guide's mesh intersects itself in {} places", guide.intersections));
     const cutting_guide::GuideSettings& set = guide.design.settings;
     const double wanted = std::min({set.thickness, set.wall, set.rail - set.text_depth, set.min_wall}) - wall_slack;
     if (guide.wall && guide.wall->thickness < wanted) {
@@ -315,33 +342,7 @@ void refuse(const PlannedGuide& guide, const mesh::MeshTopology& topology) {
     }
 }
 
-}  // namespace
-
-const char* name_of(GuideBone bone) { return bone == GuideBone::fibula ? "fibula" : "jaw"; }
-
-GuideDesign design_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
-    GuideDesign design = choice.bone == GuideBone::fibula ? of_fibula(study, choice) : of_jaw(study, choice);
-    const Vec3 x = design.along;
-    bool to_right = false;
-    std::string side;
-    if (choice.bone == GuideBone::fibula) {
-        // The donor's line runs from the foot to the knee.
-        to_right = glm::dot(x, study.inputs().line_direction) < 0.0;
-        side = study.inputs().leg == reconstruction::Leg::left ? "L" : "R";
-    } else {
-        to_right = x.y < 0.0;
-        Vec3 middle(0.0);
-        for (const Vec3& v : design.bone.vertices) middle += v / static_cast<double>(design.bone.vertices.size());
-        const auto is_left = [&](const GuideCut& c) { return c.plane.origin.x > middle.x; };
-        side = std::ranges::all_of(design.cuts, is_left)    ? "L"
-               : std::ranges::none_of(design.cuts, is_left) ? "R"
-                                                            : "LR";
-    }
-    add_texts(design, title, choice, side, to_right);
-    return design;
-}
-
-PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
+PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
     const RunJobs run = on_threads();
     PlannedGuide guide;
     guide.bone = choice.bone;
@@ -349,8 +350,8 @@ PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const 
     guide.made = cutting_guide::make_guide(guide.design, run);
     const geometry::TriangleSurface& surface = guide.made.surface;
     const geometry::TriangleTree tree(surface), bone(guide.design.bone);
-    const mesh::MeshTopology topology = mesh::topology_of(surface);
-    guide.parts = topology.components;
+    guide.topology = mesh::topology_of(surface);
+    guide.intersections = geometry::self_intersections(surface, 100, run).size();
     guide.volume = mesh::volume_of(surface);
     // Walls between letters are as thin as their strokes are near: they are not what holds the guide together.
     const Pose to_guide = guide.made.frame.inverse();
@@ -364,7 +365,12 @@ PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const 
     guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.overhang);
     for (const cutting_guide::MadeSlot& slot : guide.made.slots)
         guide.refits.push_back(cutting_guide::refit_slot(surface, slot));
-    refuse(guide, topology);
+    return guide;
+}
+
+PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
+    PlannedGuide guide = measured_guide(study, title, choice);
+    refuse_guide(guide);
     for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
     warn_clinically(guide, study, choice);
     const reconstruction::FibulaPlan placed = study.placed_plan();
@@ -415,8 +421,8 @@ file::Json guide_json(const PlannedGuide& guide) {
                          {"diameter_mm", 2.0 * h.radius / mm},
                          {"predictive", h.is_predictive}});
     return {{"bone", name_of(guide.bone)},
-            {"closed", true},
-            {"parts", guide.parts},
+            {"closed", guide.topology.is_watertight()},
+            {"parts", guide.topology.components},
             {"triangles", guide.made.surface.triangles.size()},
             {"volume_mm3", guide.volume * 1e9},
             {"wall_min_mm", guide.wall ? Json(guide.wall->thickness / mm) : Json(nullptr)},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/file/json.hpp"
+#include "assets/mesh/mesh.hpp"
 #include "dsp/cutting_guide/guide.hpp"
 #include "dsp/cutting_guide/guide_checks.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
@@ -39,7 +40,8 @@ struct PlannedGuide {
     GuideBone bone = GuideBone::fibula;
     cutting_guide::GuideDesign design;
     cutting_guide::MadeGuide made;
-    std::size_t parts = 0;
+    mesh::MeshTopology topology;
+    std::size_t intersections = 0;  ///< pairs of triangles of the mesh, at most 100
     double volume = 0.0;  ///< m³
     std::optional<cutting_guide::ThinWall> wall;  ///< none: no wall is thinner than 6 mm
     cutting_guide::Seat seat;
@@ -51,9 +53,14 @@ struct PlannedGuide {
 /// What a plan's reconstruction asks of a guide. Throws Error when its cuts or its bone are missing.
 cutting_guide::GuideDesign design_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
 
-/// Makes and checks it. Throws Error for a mesh that is not closed, wound or one part, that intersects itself, has a wall
-/// thinner than it should, a slot off the plan, or cannot be seated: such a guide must not be printed. Clinical
-/// thresholds only warn.
+/// Makes and measures it; nothing is refused. Throws Error for designs of which no guide can be made.
+PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
+
+/// Throws Error for a mesh that is not closed, wound or one part, that intersects itself, has a wall thinner than it
+/// should, a slot off the plan, or cannot be seated: such a guide must not be printed.
+void refuse_guide(const PlannedGuide& guide);
+
+/// Both. Clinical thresholds only warn.
 PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
 
 /// {closed, parts, triangles, wall_min_mm, seating, slots, play_deg, seat_play, contact_share, warnings, ...}

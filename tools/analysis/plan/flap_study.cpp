@@ -77,6 +77,9 @@ FlapStudy::FlapStudy(const plan::CasePlan& plan, const plan::PlanState& state, c
     if (segments_.size() != fibula_.segments.size()) segments_.clear();
 }
 
+FlapStudy::FlapStudy(reconstruction::FibulaInputs inputs)
+    : inputs_(std::move(inputs)), fibula_(reconstruction::plan_fibula(inputs_)) {}
+
 bool FlapStudy::needs_obstacles() const {
     const bool has_reach = !flap().sites.empty() && !flap().vessels.empty(),
                has_hardware = !flap().plates.empty() || !flap().implants.empty();

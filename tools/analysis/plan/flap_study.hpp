@@ -36,6 +36,8 @@ public:
     /// `folder`: of the plan. Throws Error if the plan's state has no reconstruction, and for files that are missing,
     /// have changed or are not meshes.
     FlapStudy(const plan::CasePlan& plan, const plan::PlanState& state, const std::filesystem::path& folder);
+    /// Of inputs with surfaces, without files: no segment is placed, and there are no vessels or plates.
+    explicit FlapStudy(reconstruction::FibulaInputs inputs);
 
     const reconstruction::FibulaInputs& inputs() const { return inputs_; }  ///< with surfaces
     const reconstruction::FibulaPlan& fibula() const { return fibula_; }
