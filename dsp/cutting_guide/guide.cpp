@@ -69,6 +69,7 @@ public:
         const double cap = set_.offset + set_.thickness + 2.0 * mm;
         const SeatedBone bone(bone_, tree, low_ - Vec3(1.0 * mm), high_ + Vec3(1.0 * mm),
                               std::min(0.5 * mm, 1.5 * set_.voxel), cap, run_);
+        find_patches(bone);
         lift_rail(bone);
         GuideSolid solid(bone);
         add_parts(solid);
@@ -195,9 +196,7 @@ private:
                 if (t < b.from - 8.0 * mm || t > b.to + 8.0 * mm || glm::length(r) > 40.0 * mm) continue;
                 const double angle = std::acos(std::clamp(glm::dot(r, up) / std::max(1e-9, glm::length(r)), -1.0, 1.0));
                 if (angle > 0.5 * set_.wrap + 0.2) continue;
-                const Vec3 around = glm::length(r) > 0.0 ? r / glm::length(r) : up;
-                add(v + 1.5 * shell * around);
-                add(v);
+                add(v - Vec3(shell)), add(v + Vec3(shell));
             }
         }
         low_ -= 2.0 * set_.voxel, high_ += 2.0 * set_.voxel;
@@ -224,6 +223,10 @@ private:
         top_ += lift;
         find_rail();
         high_.z = std::max(high_.z, top_ + 2.0 * set_.voxel);
+        cover_rail();
+    }
+
+    void cover_rail() {
         low_.x = std::min(low_.x, rail_from_ - 2.0 * set_.voxel);
         high_.x = std::max(high_.x, rail_to_ + 2.0 * set_.voxel);
     }
@@ -238,24 +241,53 @@ private:
         return grid;
     }
 
-    void add_parts(GuideSolid& solid) {
-        const Term above{Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.offset};
+    /// What the base lies on. The rail keeps off the base: where they only graze, they would join by a thin web.
+    void find_patches(const SeatedBone& bone) {
+        const double reach = set_.offset + set_.thickness;
         for (const BaseSpan& b : design_.base) {
             const Vec3 point = to_guide_.apply(b.point), axis = to_guide_.rotate(b.axis);
-            const Vec3 up = glm::normalize(Vec3(0.0, 0.0, 1.0) - axis.z * axis), aside = glm::cross(axis, up);
-            const double half = 0.5 * set_.wrap;
-            const Vec3 m = std::cos(half) * aside - std::sin(half) * up,
-                       k = -std::cos(half) * aside - std::sin(half) * up;
-            Body body{plane(axis, point + b.to * axis), plane(-axis, point + b.from * axis)};
-            if (half <= 0.5 * pi) {
-                body.push_back(plane(m, point));
-                body.push_back(plane(k, point));
-            } else {
-                body.push_back({Term::Kind::either, m, k, glm::dot(m, point), glm::dot(k, point)});
+            const Vec3 up = glm::normalize(Vec3(0.0, 0.0, 1.0) - axis.z * axis);
+            // Its round edge lies within the wrap, and in the middle of its height at the ends of the span, as far as the
+            // patch is not too narrow for it.
+            const double inset = std::min(0.5 * reach, 0.4 * (b.to - b.from)), half = 0.5 * set_.wrap;
+            const auto belongs = [&](const Vec3& p, const Vec3& normal) {
+                const double t = glm::dot(p - point, axis);
+                if (t < b.from + inset || t > b.to - inset) return false;
+                const Vec3 r = p - point - t * axis;
+                const double away = glm::length(r);
+                if (!(away > 0.0)) return false;
+                const double angle = std::acos(std::clamp(glm::dot(r, up) / away, -1.0, 1.0));
+                if (angle < 0.4 * half) return true;
+                // As far away from the middle along the surface as the edge is wide.
+                const Vec3 around = glm::dot(r, glm::cross(axis, up)) < 0.0 ? -axis : axis;
+                const Vec3 step = glm::cross(around, normal);
+                if (!(glm::length(step) > 0.1)) return false;
+                const Vec3 edge =
+                    r + reach * glm::normalize(glm::dot(step, glm::cross(around, r)) < 0.0 ? -step : step);
+                return glm::dot(edge, up) > std::cos(half) * glm::length(edge);
+            };
+            patches_.push_back(
+                std::make_shared<const Patch>(bone.patch_of(belongs, point + 0.5 * (b.from + b.to) * axis, run_)));
+        }
+        double low = rail_y_;
+        for (const auto& patch : patches_) low = std::min(low, patch->low.y - reach - 1.0 * mm);
+        low_.y -= rail_y_ - low;
+        rail_y_ = low;
+        find_rail();
+        cover_rail();
+    }
+
+    void add_parts(GuideSolid& solid) {
+        const Term above{Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.offset};
+        bool is_beyond_cuts = true;
+        for (std::size_t n = 0; n < patches_.size(); ++n) {
+            Term near{Term::Kind::near, Vec3(0.0), Vec3(0.0), set_.offset + set_.thickness};
+            near.patch = patches_[n];
+            solid.parts.push_back({std::move(near), above});
+            if (const auto& until = design_.base[n].until) {
+                solid.parts.back().push_back(plane(to_guide_.rotate(until->normal), to_guide_.apply(until->origin)));
+                is_beyond_cuts = false;
             }
-            body.push_back({Term::Kind::below, Vec3(0.0), Vec3(0.0), set_.offset + set_.thickness});
-            body.push_back(above);
-            solid.parts.push_back(std::move(body));
         }
         const double width = set_.slot_width();
         for (const Slot& s : slots_) {
@@ -270,7 +302,7 @@ private:
             } else {
                 block(0.0, top_);
                 // Beyond a ledge a low wall joins the base to the rail.
-                block(std::max(width, ledge) + set_.wall, s.top + set_.offset + set_.thickness);
+                if (is_beyond_cuts) block(std::max(width, ledge) + set_.wall, s.top + set_.offset + set_.thickness);
             }
         }
         solid.parts.push_back({side(0, 1.0, rail_to_),
@@ -342,10 +374,15 @@ private:
             solid.cuts.push_back({plane(-a.normal, a.origin), plane(-b.normal, b.origin), side(1, -1.0, rail_y_)});
             // Where the planes have crossed, a wedge stands between them, which begins with an edge.
             if (Term gap = beyond_crossing(a, b); gap.n != Vec3(0.0)) {
+                // One that does not reach the rail would be loose.
+                const bool is_held = std::ranges::any_of(std::array{rail_low_, top_}, [&](double z) {
+                    return a.x_at(rail_y_, z) > b.x_at(rail_y_, z) + set_.min_wall;
+                });
                 const Vec3 across = b.normal - b.normal.x / a.normal.x * a.normal;
                 gap.n = -gap.n, gap.d = -gap.d + set_.min_wall * std::abs(b.normal.x) / glm::length(across);
                 solid.cuts.push_back({plane(a.normal, a.origin + overlap * a.normal),
-                                      plane(b.normal, b.origin + overlap * b.normal), gap, side(1, -1.0, rail_y_)});
+                                      plane(b.normal, b.origin + overlap * b.normal), side(1, -1.0, rail_y_)});
+                if (is_held) solid.cuts.back().push_back(gap);
             }
         }
     }
@@ -402,7 +439,7 @@ private:
                 {side(1, 1.0, face + set_.text_depth),
                  side(0, -1.0, x - 0.4 * mm),
                  side(0, 1.0, x + text.width + 0.4 * mm),
-                 {Term::Kind::text, Vec3(0.0), Vec3(x, 0.0, top_ - row), 0.0, 0.0, std::make_shared<TextField>(text)}});
+                 {Term::Kind::text, Vec3(0.0), Vec3(x, 0.0, top_ - row), 0.0, std::make_shared<TextField>(text)}});
             made_.texts.push_back({Vec3(x, face, top_ - row), text});
         };
         for (std::size_t n = 0; n < 2; ++n)
@@ -417,6 +454,7 @@ private:
     Pose to_guide_;
     geometry::TriangleSurface bone_;  // in the frame of the guide, as all below
     std::vector<Slot> slots_;
+    std::vector<std::shared_ptr<const Patch>> patches_;  // of each base
     double rail_y_ = 0.0, rail_low_ = 0.0, rail_from_ = 0.0, rail_to_ = 0.0, top_ = 0.0;
     Vec3 low_{0.0}, high_{0.0};
 };

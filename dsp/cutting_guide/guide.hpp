@@ -59,6 +59,8 @@ struct GuideCut {
 struct BaseSpan {
     Vec3 point{0.0}, axis{1.0, 0.0, 0.0};  ///< unit
     double from = 0.0, to = 0.0;  ///< m along the axis
+    /// The base lies on the negative side of it; none: also beyond the cuts.
+    std::optional<reconstruction::Plane> until{};
 };
 
 struct GuideHole {
@@ -115,7 +117,8 @@ struct MadeGuide {
     std::size_t flipped = 0, smoothed = 0;  ///< see geometry::Contour
 };
 
-/// The base follows the bone at `offset`, `thickness` thick, where the approach reaches, over each span. Each cut has a
+/// The base follows the bone at `offset`, `thickness` thick, where the approach reaches, over each span; it ends with
+/// round edges, since planes through its shell would leave feather edges on a flat bone. Each cut has a
 /// block with a slot whose wall on the kept side lies on the plane: a blade that is held against it cuts on plan, one at
 /// the other wall leaves bone. A rail beside the bone joins the blocks, and bears the text. All is united and
 /// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. Throws Error for

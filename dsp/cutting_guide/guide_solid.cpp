@@ -68,9 +68,8 @@ double TextField::value(double x, double y) const noexcept {
 double GuideSolid::value_of(const Term& term, const Vec3& p) const noexcept {
     switch (term.kind) {
         case Term::Kind::plane: return glm::dot(term.n, p) - term.d;
-        case Term::Kind::either: return std::min(glm::dot(term.n, p) - term.d, glm::dot(term.at, p) - term.e);
         case Term::Kind::above: return term.d - bone_.value(p);
-        case Term::Kind::below: return bone_.value(p) - term.d;
+        case Term::Kind::near: return term.patch->distance.value(p) - term.d;
         case Term::Kind::cylinder: {
             const Vec3 r = p - term.at;
             return glm::length(r - glm::dot(r, term.n) * term.n) - term.d;
@@ -83,9 +82,8 @@ double GuideSolid::value_of(const Term& term, const Vec3& p) const noexcept {
 Vec3 GuideSolid::normal_of(const Term& term, const Vec3& p) const noexcept {
     switch (term.kind) {
         case Term::Kind::plane: return term.n;
-        case Term::Kind::either: return glm::dot(term.n, p) - term.d < glm::dot(term.at, p) - term.e ? term.n : term.at;
         case Term::Kind::above: return -bone_.gradient(p);
-        case Term::Kind::below: return bone_.gradient(p);
+        case Term::Kind::near: return term.patch->distance.gradient(p);
         case Term::Kind::cylinder: {
             Vec3 r = p - term.at;
             r -= glm::dot(r, term.n) * term.n;

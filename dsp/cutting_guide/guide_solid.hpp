@@ -27,16 +27,16 @@ private:
 struct Term {
     enum class Kind {
         plane,     ///< n · p - d
-        either,    ///< the lesser of two planes
         above,     ///< d - distance from the seated bone: at least d away from it
-        below,     ///< distance from the seated bone - d
+        near,      ///< distance from a patch of the bone - d
         cylinder,  ///< distance from the line through `at` along n, less d
         text       ///< in the plane y = const of the text whose origin is `at`
     };
     Kind kind = Kind::plane;
     Vec3 n{0.0}, at{0.0};
-    double d = 0.0, e = 0.0;
+    double d = 0.0;
     std::shared_ptr<const TextField> text{};
+    std::shared_ptr<const Patch> patch{};
 };
 /// The intersection of its terms.
 using Body = std::vector<Term>;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tactus::cutting_guide {
 
@@ -17,40 +18,64 @@ namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::infinity();
 
+/// Of the parts that share vertices, the one with the triangle nearest to `at`.
+void keep_part_near(geometry::TriangleSurface& surface, const Vec3& at) {
+    std::vector<int> root(surface.vertices.size());
+    std::iota(root.begin(), root.end(), 0);
+    const auto root_of = [&](int v) {
+        while (root[static_cast<std::size_t>(v)] != v)
+            v = root[static_cast<std::size_t>(v)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(v)])];
+        return v;
+    };
+    int nearest = -1;
+    double least = infinity;
+    for (const auto& t : surface.triangles) {
+        const int a = root_of(t[0]);
+        root[static_cast<std::size_t>(root_of(t[1]))] = a, root[static_cast<std::size_t>(root_of(t[2]))] = a;
+        const Vec3 r = surface.vertices[static_cast<std::size_t>(t[0])] - at;
+        if (const double away = glm::dot(r, r); away < least) least = away, nearest = t[0];
+    }
+    if (nearest < 0) return;
+    const int kept = root_of(nearest);
+    std::erase_if(surface.triangles, [&](const auto& t) { return root_of(t[0]) != kept; });
+}
+
 }  // namespace
 
 SeatedBone::SeatedBone(const geometry::TriangleSurface& bone, const geometry::TriangleTree& tree, const Vec3& low,
-                       const Vec3& high, double spacing, double cap, const RunJobs& run) {
-    grid_.origin = low;
-    grid_.spacing = Vec3(spacing);
+                       const Vec3& high, double spacing, double cap, const RunJobs& run)
+    : cap_(cap) {
+    volume::Grid& grid = field_.grid;
+    grid.origin = low;
+    grid.spacing = Vec3(spacing);
     for (int axis = 0; axis < 3; ++axis)
-        grid_.size[static_cast<std::size_t>(axis)] =
+        grid.size[static_cast<std::size_t>(axis)] =
             std::max(2, static_cast<int>(std::ceil((high[axis] - low[axis]) / spacing)) + 1);
-    grid_.values.assign(grid_.count(), static_cast<float>(cap));
-    top_.assign(static_cast<std::size_t>(grid_.size[0]) * static_cast<std::size_t>(grid_.size[1]), nowhere);
+    grid.values.assign(grid.count(), static_cast<float>(cap));
+    top_.assign(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]), nowhere);
     raise(bone);
-    run(grid_.size[1], [&](int j) {
+    run(grid.size[1], [&](int j) {
         double at_top = infinity;  // distance of the highest sample of the column before
-        for (int i = 0; i < grid_.size[0]; ++i) {
+        for (int i = 0; i < grid.size[0]; ++i) {
             const double top_here = top_[column(i, j)];
             double least = cap, bound = at_top + 1.001 * spacing;
             at_top = infinity;
-            for (int k = grid_.size[2] - 1; k >= 0; --k) {
+            for (int k = grid.size[2] - 1; k >= 0; --k) {
                 // Two samples below the surface are enough to find its place between samples.
-                const Vec3 p = grid_.position(i, j, k);
+                const Vec3 p = grid.position(i, j, k);
                 if (p.z < top_here - 2.0 * spacing) {
                     least = std::min(least, -spacing);
                 } else {
                     // The distance of a sample beside bounds that of this one, and shortens the search.
                     const double away = tree.nearest(p, bound).distance;
-                    if (k == grid_.size[2] - 1) at_top = away;
+                    if (k == grid.size[2] - 1) at_top = away;
                     bound = away + 1.001 * spacing;
                     least = std::min(least, p.z < top_here ? -away : away);
                     // None of these samples can come nearer than the cap.
                     for (int skip = static_cast<int>((away - cap) / spacing); skip > 0 && k > 0; --skip)
-                        grid_.at(i, j, k--) = static_cast<float>(least), bound += 1.001 * spacing;
+                        grid.at(i, j, k--) = static_cast<float>(least), bound += 1.001 * spacing;
                 }
-                grid_.at(i, j, k) = static_cast<float>(least);
+                grid.at(i, j, k) = static_cast<float>(least);
             }
         }
     });
@@ -58,17 +83,18 @@ SeatedBone::SeatedBone(const geometry::TriangleSurface& bone, const geometry::Tr
 
 // Each triangle raises the columns that it covers.
 void SeatedBone::raise(const geometry::TriangleSurface& bone) {
-    const double h = grid_.spacing.x;
+    const volume::Grid& grid = field_.grid;
+    const double h = grid.spacing.x;
     for (const auto& t : bone.triangles) {
         Vec3 c[3];
         for (std::size_t n = 0; n < 3; ++n)
-            c[n] = (bone.vertices[static_cast<std::size_t>(t[n])] - grid_.origin) / Vec3(h, h, 1.0);
+            c[n] = (bone.vertices[static_cast<std::size_t>(t[n])] - grid.origin) / Vec3(h, h, 1.0);
         const double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
         if (area == 0.0) continue;
         const auto range = [&](int axis) {
             const double low = std::min({c[0][axis], c[1][axis], c[2][axis]}),
                          high = std::max({c[0][axis], c[1][axis], c[2][axis]});
-            const int last = grid_.size[static_cast<std::size_t>(axis)] - 1;
+            const int last = grid.size[static_cast<std::size_t>(axis)] - 1;
             return std::array{static_cast<int>(std::clamp(std::ceil(low), 0.0, last + 1.0)),
                               static_cast<int>(std::clamp(std::floor(high), -1.0, static_cast<double>(last)))};
         };
@@ -80,32 +106,72 @@ void SeatedBone::raise(const geometry::TriangleSurface& bone) {
                              v = ((c[1].x - c[0].x) * (j - c[0].y) - (c[1].y - c[0].y) * (i - c[0].x)) / area;
                 if (u < -1e-9 || v < -1e-9 || u + v > 1.0 + 1e-9) continue;
                 double& top_here = top_[column(i, j)];
-                top_here = std::max(top_here, grid_.origin.z + c[0].z + u * (c[1].z - c[0].z) + v * (c[2].z - c[0].z));
+                top_here = std::max(top_here, grid.origin.z + c[0].z + u * (c[1].z - c[0].z) + v * (c[2].z - c[0].z));
             }
     }
 }
 
-double SeatedBone::value(const Vec3& p) const noexcept {
-    Vec3 at = (p - grid_.origin) / grid_.spacing;
+Patch SeatedBone::patch_of(const std::function<bool(const Vec3&, const Vec3&)>& belongs, const Vec3& at,
+                           const RunJobs& run) const {
+    const volume::Grid& grid = field_.grid;
+    const double spacing = grid.spacing.x;
+    geometry::TriangleSurface surface = geometry::iso_surface(grid, 0.0f, false);
+    const auto corner = [&](const std::array<int, 3>& t, std::size_t c) {
+        return surface.vertices[static_cast<std::size_t>(t[c])];
+    };
+    std::erase_if(surface.triangles, [&](const std::array<int, 3>& t) {
+        const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2), normal = glm::cross(b - a, c - a);
+        return normal == Vec3(0.0) || !belongs((a + b + c) / 3.0, glm::normalize(normal));
+    });
+    keep_part_near(surface, at);
+    const geometry::TriangleTree tree(surface);
+    Patch found{{grid}, at, at};
+    for (const auto& t : surface.triangles)
+        for (std::size_t c = 0; c < 3; ++c)
+            found.low = glm::min(found.low, corner(t, c)), found.high = glm::max(found.high, corner(t, c));
+    run(grid.size[1], [&](int j) {
+        const auto is_deep = [&](int i, int row, int k) {
+            return i < 0 || row < 0 || i >= grid.size[0] || row >= grid.size[1] ||
+                   grid.at(i, row, k) <= static_cast<float>(-spacing);
+        };
+        for (int k = 0; k < grid.size[2]; ++k) {
+            double bound = cap_;
+            for (int i = 0; i < grid.size[0]; ++i) {
+                const bool is_needed = grid.at(i, j, k) < static_cast<float>(cap_) &&
+                                       !(is_deep(i, j, k) && is_deep(i - 1, j, k) && is_deep(i + 1, j, k) &&
+                                         is_deep(i, j - 1, k) && is_deep(i, j + 1, k));
+                const double away =
+                    is_needed ? std::min(cap_, tree.nearest(grid.position(i, j, k), bound).distance) : cap_;
+                // The distance of this sample bounds that of the next one.
+                bound = is_needed ? std::min(cap_, away + 1.001 * spacing) : cap_;
+                found.distance.grid.at(i, j, k) = static_cast<float>(away);
+            }
+        }
+    });
+    return found;
+}
+
+double DistanceField::value(const Vec3& p) const noexcept {
+    Vec3 at = (p - grid.origin) / grid.spacing;
     std::array<int, 3> n{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        const double inside = std::clamp(at[axis], 0.0, grid_.size[a] - 1.0);
+        const double inside = std::clamp(at[axis], 0.0, grid.size[a] - 1.0);
         at[axis] = inside;
-        n[a] = std::min(static_cast<int>(inside), grid_.size[a] - 2);
+        n[a] = std::min(static_cast<int>(inside), grid.size[a] - 2);
         at[axis] -= n[a];
     }
     double sum = 0.0;
     for (int c = 0; c < 8; ++c) {
         const int x = c & 1, y = c >> 1 & 1, z = c >> 2;
-        sum += static_cast<double>(grid_.at(n[0] + x, n[1] + y, n[2] + z)) * (x ? at.x : 1.0 - at.x) *
+        sum += static_cast<double>(grid.at(n[0] + x, n[1] + y, n[2] + z)) * (x ? at.x : 1.0 - at.x) *
                (y ? at.y : 1.0 - at.y) * (z ? at.z : 1.0 - at.z);
     }
     return sum;
 }
 
-Vec3 SeatedBone::gradient(const Vec3& p) const noexcept {
-    const double h = 0.5 * grid_.spacing.x;
+Vec3 DistanceField::gradient(const Vec3& p) const noexcept {
+    const double h = 0.5 * grid.spacing.x;
     Vec3 g(0.0);
     for (int axis = 0; axis < 3; ++axis) {
         Vec3 step(0.0);
@@ -117,16 +183,16 @@ Vec3 SeatedBone::gradient(const Vec3& p) const noexcept {
 }
 
 double SeatedBone::top(double x, double y) const noexcept {
-    const int i = static_cast<int>(std::lround((x - grid_.origin.x) / grid_.spacing.x)),
-              j = static_cast<int>(std::lround((y - grid_.origin.y) / grid_.spacing.y));
-    if (i < 0 || j < 0 || i >= grid_.size[0] || j >= grid_.size[1]) return nowhere;
+    const int i = static_cast<int>(std::lround((x - field_.grid.origin.x) / field_.grid.spacing.x)),
+              j = static_cast<int>(std::lround((y - field_.grid.origin.y) / field_.grid.spacing.y));
+    if (i < 0 || j < 0 || i >= field_.grid.size[0] || j >= field_.grid.size[1]) return nowhere;
     return top_[column(i, j)];
 }
 
 double SeatedBone::top_within(const Vec3& low, const Vec3& high) const noexcept {
     double most = nowhere;
-    for (double y = low.y; y <= high.y; y += 0.5 * grid_.spacing.y)
-        for (double x = low.x; x <= high.x; x += 0.5 * grid_.spacing.x) most = std::max(most, top(x, y));
+    for (double y = low.y; y <= high.y; y += 0.5 * field_.grid.spacing.y)
+        for (double x = low.x; x <= high.x; x += 0.5 * field_.grid.spacing.x) most = std::max(most, top(x, y));
     return most;
 }
 

@@ -8,9 +8,25 @@
 #include "dsp/volume/grid.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace tactus::cutting_guide {
+
+/// Distances sampled on a grid of cubic cells, trilinear in between.
+struct DistanceField {
+    volume::Grid grid;
+
+    double value(const Vec3& p) const noexcept;  ///< m; beyond the grid that of its border
+    /// Unit; +z where the distance does not change.
+    Vec3 gradient(const Vec3& p) const noexcept;
+};
+
+/// A part of a surface: the distance from it, and its box.
+struct Patch {
+    DistanceField distance;
+    Vec3 low{0.0}, high{0.0};
+};
 
 /// Distance from the space that a guide may not occupy: the bone and what lies in its shadow along -z, so that a guide
 /// outside of it can be lifted along +z. A grid holds the smallest distance to the bone of a sample and all those above
@@ -24,9 +40,12 @@ public:
 
     /// At most `cap`; trilinear, so that it changes by at most the distance between two positions (times 1.8 in cells that
     /// the edge of the shadow crosses).
-    double value(const Vec3& p) const noexcept;
+    double value(const Vec3& p) const noexcept { return field_.value(p); }
     /// Unit; the direction of removal where the distance does not change.
-    Vec3 gradient(const Vec3& p) const noexcept;
+    Vec3 gradient(const Vec3& p) const noexcept { return field_.gradient(p); }
+    /// Of the surface of that space, of what `belongs`, the connected part nearest to `at`. What is near a patch ends with a round edge beside it, at any shape of bone. Without such a part, `cap` everywhere and a box at `at`.
+    Patch patch_of(const std::function<bool(const Vec3& p, const Vec3& normal)>& belongs, const Vec3& at,
+                   const RunJobs& run) const;
     /// z of the highest surface in the column of (x, y); none within the grid: -infinity.
     double top(double x, double y) const noexcept;
     /// The highest of `top` in a box of x and y; -infinity: no bone.
@@ -35,10 +54,12 @@ public:
 private:
     void raise(const geometry::TriangleSurface& bone);
     std::size_t column(int i, int j) const {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.size[0]) + static_cast<std::size_t>(i);
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(field_.grid.size[0]) +
+               static_cast<std::size_t>(i);
     }
 
-    volume::Grid grid_;
+    DistanceField field_;
+    double cap_;
     std::vector<double> top_;  // per column
 };
 

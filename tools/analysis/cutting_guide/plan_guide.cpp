@@ -200,11 +200,12 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
                                choice.cut == 2 || n > 0 ? "the last plane of the jaw" : "the first plane of the jaw"});
     std::ranges::sort(design.cuts, {}, [&](const GuideCut& c) { return glm::dot(c.plane.origin, design.along); });
     add_letters(design.cuts);
-    const double beyond = design.settings.slot_width() + design.settings.wall;
+    // The base ends at the plane: the blade passes along its face above the walls.
+    const double beyond = design.settings.offset + design.settings.thickness;
     for (const GuideCut& c : design.cuts) {
         const double reach =
             std::max(design.settings.wall + design.settings.end, room_for_screw(design, -c.plane.normal, 0.0));
-        design.base.push_back({c.plane.origin, c.plane.normal, -reach, beyond});
+        design.base.push_back({c.plane.origin, c.plane.normal, -reach, beyond, c.plane});
         const Vec3 aside = glm::normalize(glm::cross(design.removal, c.plane.normal)),
                    place = c.plane.origin - (reach - design.settings.screw_radius - 2.5 * mm) * c.plane.normal;
         for (const double side : {-5.0 * mm, 5.0 * mm})

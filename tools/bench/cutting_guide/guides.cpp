@@ -33,6 +33,7 @@ struct GuidesChoice {
     int first = 0, count = 12;
     double voxel = 0.5;  // mm
     std::vector<std::filesystem::path> jaws;
+    std::filesystem::path keep;
     bool json = false;
 };
 
@@ -115,6 +116,13 @@ void count_one(std::uint64_t number, const NamedBone& jaw, bool for_jaw, const G
     ++tally.drawn;
     const RandomGuide drawn = random_guide(number, jaw.surface, for_jaw, choice.voxel * mm);
     const double before = process_seconds();
+    const auto keep = [&](const analysis::PlannedGuide& guide) {
+        if (choice.keep.empty()) return;
+        std::filesystem::create_directories(choice.keep);
+        mesh::write_mesh(std::array{mesh::ColouredSurface{guide.made.surface, Vec3(0.35, 0.62, 0.72)},
+                                    mesh::ColouredSurface{guide.design.bone, Vec3(0.9, 0.86, 0.76)}},
+                         choice.keep / fmt::format("guide-{}.ply", number));
+    };
     const auto refused = [&](int& count, const Error& error) {
         ++count, ++tally.reasons[kind_of(error.what())];
         if (!choice.json) fmt::print("{}: {}\n", number, error.what());
@@ -126,12 +134,14 @@ void count_one(std::uint64_t number, const NamedBone& jaw, bool for_jaw, const G
         if (const std::string flaws = flaws_of(guide, tally, stl); !flaws.empty()) {
             ++tally.flawed;
             fmt::print(stderr, "{}: {}\n", number, flaws);
+            keep(guide);
             return;
         }
         try {
             analysis::refuse_guide(guide);
         } catch (const Error& error) {
             refused(tally.refused, error);
+            keep(guide);
             return;
         }
         ++tally.made;
@@ -207,6 +217,8 @@ Verb guides_verb() {
                     .range(1, 100'000);
                 verb.add("--voxel", choice->voxel, "mm of the grid behind the mesh").shows_default().range(0.1, 1.0);
                 verb.add("--jaw", choice->jaws, "mesh of another jaw, mm, LPS");
+                verb.add("--keep", choice->keep,
+                         "folder for the meshes of flawed and refused guides, with their bones");
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return run(*choice); };
             }};

@@ -3,6 +3,7 @@
 
 #include "dsp/core/constants.hpp"
 #include "tools/render/flap_scene.hpp"
+#include "tools/report/cutting_guide/guide_drawing.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -135,6 +136,7 @@ std::vector<ReportBlock> guide_blocks(const analysis::PlannedGuide& guide) {
         blocks.push_back(std::move(list));
     }
     blocks.push_back(PictureGrid{guide_pictures(guide)});
+    blocks.push_back(Drawing{guide_drawing(guide), "To scale. Widths are measured in the mesh."});
     blocks.push_back(guide_slots(guide));
     if (!guide.made.holes.empty()) blocks.push_back(guide_holes(guide));
     blocks.push_back(guide_checks(guide));

@@ -13,7 +13,7 @@ namespace tactus::report {
 /// pictures cannot be made.
 std::vector<render::LabelledPicture> guide_pictures(const analysis::PlannedGuide& guide);
 
-/// Pictures, and tables of the slots with their letters, the holes, the checks and where each number is from.
+/// Pictures, a drawing with dimensions, and tables of the slots with their letters, the holes, the checks and where each number is from.
 std::vector<ReportBlock> guide_blocks(const analysis::PlannedGuide& guide);
 
 }  // namespace tactus::report
