@@ -176,6 +176,18 @@ private:
         return s.normal.x > 0.0 ? x - 1.0 * mm - design_.letters[n].width : x + 1.0 * mm;
     }
 
+    /// Keeps what lies in front of a plane.
+    static void clip(std::vector<Vec3>& polygon, const Vec3& origin, const Vec3& normal) {
+        std::vector<Vec3> kept;
+        for (std::size_t n = 0; n < polygon.size(); ++n) {
+            const Vec3 &p = polygon[n], &q = polygon[(n + 1) % polygon.size()];
+            const double a = glm::dot(p - origin, normal), b = glm::dot(q - origin, normal);
+            if (a >= 0.0) kept.push_back(p);
+            if ((a < 0.0) != (b < 0.0)) kept.push_back(glm::mix(p, q, a / (a - b)));
+        }
+        polygon = std::move(kept);
+    }
+
     void find_grid() {
         low_ = Vec3(rail_from_, rail_y_ - set_.rail, rail_low_);
         high_ = Vec3(rail_to_, rail_y_, top_);
@@ -190,13 +202,25 @@ private:
         for (const BaseSpan& b : design_.base) {
             const Vec3 point = to_guide_.apply(b.point), axis = to_guide_.rotate(b.axis);
             const Vec3 up = glm::normalize(Vec3(0.0, 0.0, 1.0) - axis.z * axis);
-            for (const Vec3& v : bone_.vertices) {
-                const double t = glm::dot(v - point, axis);
-                const Vec3 r = v - point - t * axis;
-                if (t < b.from - 8.0 * mm || t > b.to + 8.0 * mm || glm::length(r) > 40.0 * mm) continue;
-                const double angle = std::acos(std::clamp(glm::dot(r, up) / std::max(1e-9, glm::length(r)), -1.0, 1.0));
-                if (angle > 0.5 * set_.wrap + 0.2) continue;
-                add(v - Vec3(shell)), add(v + Vec3(shell));
+            for (const auto& triangle : bone_.triangles) {
+                std::vector<Vec3> part;
+                for (const int v : triangle) part.push_back(bone_.vertices[static_cast<std::size_t>(v)]);
+                // Of a large triangle all of it counts within the span, whatever the angles of its corners are.
+                const bool is_large = std::max({glm::length(part[0] - part[1]), glm::length(part[1] - part[2]),
+                                                glm::length(part[2] - part[0])}) > 5.0 * mm;
+                clip(part, point + (b.from - 8.0 * mm) * axis, axis);
+                clip(part, point + (b.to + 8.0 * mm) * axis, -axis);
+                for (Vec3 v : part) {
+                    const Vec3 r = v - point - glm::dot(v - point, axis) * axis;
+                    const double away = glm::length(r);
+                    if (away > 40.0 * mm) {
+                        if (!is_large) continue;
+                        v += (40.0 * mm / away - 1.0) * r;
+                    }
+                    const double angle = std::acos(std::clamp(glm::dot(r, up) / std::max(1e-9, away), -1.0, 1.0));
+                    if (!is_large && angle > 0.5 * set_.wrap + 0.2) continue;
+                    add(v - Vec3(shell)), add(v + Vec3(shell));
+                }
             }
         }
         low_ -= 2.0 * set_.voxel, high_ += 2.0 * set_.voxel;
@@ -271,8 +295,8 @@ private:
         }
         double low = rail_y_;
         for (const auto& patch : patches_) low = std::min(low, patch->low.y - reach - 1.0 * mm);
-        low_.y -= rail_y_ - low;
         rail_y_ = low;
+        low_.y = std::min(low_.y, rail_y_ - set_.rail - 2.0 * set_.voxel);
         find_rail();
         cover_rail();
     }
@@ -403,31 +427,44 @@ private:
         made_.slots.push_back(std::move(slot));
     }
 
-    /// Only where the guide surrounds it.
-    void add_hole(GuideSolid& solid, const SeatedBone& bone, const GuideHole& hole) {
-        const Vec3 at = to_guide_.apply(hole.at), axis = to_guide_.rotate(hole.axis);
+    /// The middle of the base in front of a hole, if the guide surrounds it there.
+    std::optional<Vec3> surrounded(const GuideSolid& solid, const SeatedBone& bone, const Vec3& at, const Vec3& axis,
+                                   double radius) const {
         const double level = set_.offset + 0.5 * set_.thickness;
         // Out of the bone against the axis, until the middle of the base.
         double t = -10.0 * mm;
         while (t < 25.0 * mm && bone.value(at - t * axis) < level) t += 0.1 * mm;
+        if (!(t < 25.0 * mm)) return {};
         const Vec3 middle = at - t * axis;
         const Vec3 u = glm::normalize(
                        glm::cross(axis, std::abs(axis.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0))),
                    v = glm::cross(axis, u);
-        bool is_surrounded = t < 25.0 * mm;
-        for (int k = 0; k < 12 && is_surrounded; ++k) {
+        // A wall is left around it.
+        const double ring = radius + set_.min_wall + 0.1 * mm;
+        for (int k = 0; k < 12; ++k) {
             const double a = k * pi / 6.0;
-            const Vec3 p = middle + (hole.radius + 1.0 * mm) * (std::cos(a) * u + std::sin(a) * v);
-            is_surrounded = solid.value(p) < 0.0;
+            if (!(solid.value(middle + ring * (std::cos(a) * u + std::sin(a) * v)) < 0.0)) return {};
         }
-        if (!is_surrounded) {
-            made_.notes.push_back(fmt::format("{}: the guide does not surround it, and has no hole for it", hole.name));
+        return middle;
+    }
+
+    /// Only where the guide surrounds it.
+    void add_hole(GuideSolid& solid, const SeatedBone& bone, const GuideHole& hole) {
+        const Vec3 axis = to_guide_.rotate(hole.axis);
+        constexpr int steps = 8;
+        const int last = hole.slide == Vec3(0.0) ? 0 : steps;
+        for (int n = 0; n <= last; ++n) {
+            GuideHole moved = hole;
+            moved.at += static_cast<double>(n) / steps * hole.slide;
+            const auto middle = surrounded(solid, bone, to_guide_.apply(moved.at), axis, hole.radius);
+            if (!middle) continue;
+            solid.cuts.push_back({plane(axis, *middle + 15.0 * mm * axis),
+                                  plane(-axis, *middle - 25.0 * mm * axis),
+                                  {Term::Kind::cylinder, axis, *middle, hole.radius}});
+            made_.holes.push_back(std::move(moved));
             return;
         }
-        solid.cuts.push_back({plane(axis, middle + 15.0 * mm * axis),
-                              plane(-axis, middle - 25.0 * mm * axis),
-                              {Term::Kind::cylinder, axis, middle, hole.radius}});
-        made_.holes.push_back(hole);
+        made_.notes.push_back(fmt::format("{}: the guide does not surround it, and has no hole for it", hole.name));
     }
 
     void add_texts(GuideSolid& solid) {

@@ -68,6 +68,7 @@ struct GuideHole {
     double radius = 1.5e-3;
     std::string name;
     bool is_predictive = false;  ///< of a plate or implant; else the guide is fixed by it
+    Vec3 slide{0.0};  ///< m: by up to so much it may move until the guide surrounds it
 };
 
 /// A closed polygon of a glyph, m; filled by the non-zero rule.

@@ -57,7 +57,7 @@ TEST_CASE("letters of a guide are read back from its rail", "[slow]") {
     const MadeGuide made = make_guide(design, run_in_turn);
     const Pose to_guide = made.frame.inverse();
     REQUIRE(made.texts.size() == design.letters.size());
-    // How deep the rail is below its face, over the text, by the triangles that look out.
+    // How deep the rail is below its face, over the text, by the triangles that look out, at places off the outlines.
     for (const MadeText& text : made.texts) {
         constexpr int columns = 40, rows = 60;
         const double step = 0.1 * mm;
@@ -70,7 +70,7 @@ TEST_CASE("letters of a guide are read back from its rail", "[slow]") {
             if (area == 0.0) continue;
             for (int row = 0; row < rows; ++row)
                 for (int column = 0; column < columns; ++column) {
-                    const double x = (column - 5) * step, z = (row - 10) * step;
+                    const double x = (column - 4.5) * step, z = (row - 9.5) * step;
                     const double u = ((x - c[0].x) * (c[2].z - c[0].z) - (z - c[0].z) * (c[2].x - c[0].x)) / area,
                                  v = ((c[1].x - c[0].x) * (z - c[0].z) - (c[1].z - c[0].z) * (x - c[0].x)) / area;
                     if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
@@ -81,7 +81,7 @@ TEST_CASE("letters of a guide are read back from its rail", "[slow]") {
         int both = 0, either = 0;
         for (int row = 0; row < rows; ++row)
             for (int column = 0; column < columns; ++column) {
-                const double x = (column - 5) * step, z = (row - 10) * step;
+                const double x = (column - 4.5) * step, z = (row - 9.5) * step;
                 const bool is_letter = (x > 0.0 && x < 0.9 * mm && z > 0.0 && z < 4.0 * mm) ||
                                        (x > 0.0 && x < 2.6 * mm && z > 0.0 && z < 0.9 * mm);
                 const bool is_deep =
@@ -175,4 +175,36 @@ TEST_CASE("a guide that cannot be made is refused with the reason") {
     design = test::random_guide(9, 1);
     design.cuts.clear();
     CHECK_THROWS_AS(make_guide(design, run_in_turn), Error);
+}
+
+TEST_CASE("a base on a flat bone ends with round edges") {
+    // A plate of 60 x 40 mm, 12 mm thick: planes through the shell would leave edges of 30°.
+    GuideDesign design;
+    Vec3 corner[8];
+    for (int n = 0; n < 8; ++n) corner[n] = Vec3(n & 1 ? 30.0 : -30.0, n & 2 ? 20.0 : -20.0, n & 4 ? 6.0 : -6.0) * mm;
+    design.bone.vertices.assign(corner, corner + 8);
+    design.bone.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                             {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    REQUIRE(test::volume_of(design.bone) > 0.0);
+    design.cuts.push_back({{Vec3(0.0), Vec3(1.0, 0.0, 0.0)}, "cut", 'A'});
+    design.base.push_back({Vec3(0.0), Vec3(1.0, 0.0, 0.0), -17.0 * mm, 4.5 * mm, design.cuts[0].plane});
+    design.settings.voxel = 0.5 * mm, design.settings.cover = 0.65;
+    // The first place is beyond the base.
+    design.holes.push_back(
+        {Vec3(-22.0 * mm, 0.0, 0.0), Vec3(0.0, 0.0, -1.0), 1.5 * mm, "screw", false, Vec3(14.0 * mm, 0.0, 0.0)});
+    design.holes.push_back({Vec3(-22.0 * mm, 0.0, 0.0), Vec3(0.0, 0.0, -1.0), 1.5 * mm, "far", true});
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::flaws_of(made.surface) == "none");
+    CHECK(test::parts_of(made.surface) == 1);
+    const geometry::TriangleTree tree(made.surface);
+    const auto wall = thinnest_wall(made.surface, tree, 6.0 * mm, [](const Vec3&) { return true; }, run_in_turn);
+    CHECK((!wall || wall->thickness > 1.9 * mm));
+    REQUIRE(made.holes.size() == 1);
+    CHECK(made.holes[0].at.x > -17.0 * mm);
+    CHECK(made.holes[0].at.x < -7.9 * mm);
+    REQUIRE(made.notes.size() == 1);
+    CHECK_THAT(made.notes[0], Catch::Matchers::ContainsSubstring("far"));
+    // On the removed side there are the walls alone.
+    for (const Vec3& v : made.surface.vertices)
+        if (v.x > 1e-6 && v.y > 0.0) CHECK(v.x < design.settings.slot_width() + design.settings.wall + 0.1 * mm);
 }

@@ -208,9 +208,12 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
         design.base.push_back({c.plane.origin, c.plane.normal, -reach, beyond, c.plane});
         const Vec3 aside = glm::normalize(glm::cross(design.removal, c.plane.normal)),
                    place = c.plane.origin - (reach - design.settings.screw_radius - 2.5 * mm) * c.plane.normal;
+        // On a curved jaw the base is narrow at its end: there the holes move towards the cut and each other.
+        const double room = reach - room_for_screw(design, -c.plane.normal, 0.0);
         for (const double side : {-5.0 * mm, 5.0 * mm})
             design.holes.push_back({place + side * aside, -design.removal, design.settings.screw_radius,
-                                    fmt::format("screw beside cut {}", c.letter), false});
+                                    fmt::format("screw beside cut {}", c.letter), false,
+                                    room * c.plane.normal - 0.25 * side * aside});
     }
     add_predictive(study.flap(), [&](const Vec3& head, const Vec3& along, double radius, const std::string& name) {
         const bool is_kept = std::ranges::any_of(design.cuts, [&](const GuideCut& c) {
