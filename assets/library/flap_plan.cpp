@@ -4,6 +4,7 @@
 #include "assets/bone/labels.hpp"
 #include "assets/library/flap_bones.hpp"
 #include "assets/library/hand_script.hpp"
+#include "assets/plan/plan_history.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
@@ -272,7 +273,7 @@ plan::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>&
             plan::add_step(plan, hide);
         }
         for (std::size_t n = first_segment; n < places.size(); ++n)
-            plan::add_step(plan, plan::placing(plan, static_cast<int>(n), places[n], "command"));
+            plan::change(plan, plan::PlaceFragment{static_cast<int>(n), places[n]}, {.by = "command"});
     };
     arrange(pieces.planned, true);
     plan.alternatives.push_back({"table", {}});

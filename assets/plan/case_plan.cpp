@@ -45,12 +45,7 @@ int group_meant(const PlanStep& step, const PlanState& state) {
     refuse(step, fmt::format("there is no group '{}'{}", step.group, did_you_mean(step.group, names)));
 }
 
-constexpr double farthest = 100.0;  // m: beyond it the numbers of a pose are wrong
-
-bool is_near(const Pose& pose) {
-    const Vec3 away = glm::abs(pose.position);
-    return std::max({away.x, away.y, away.z}) <= farthest;
-}
+constexpr double farthest = 100.0;  // m
 
 void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
     if (step.poses.size() != step.fragments.size()) refuse(step, "does not have one pose per fragment");
@@ -97,6 +92,11 @@ void forget_groups_that_are_gone(PlanState& state) {
 }
 
 }  // namespace
+
+bool is_near(const Pose& pose) noexcept {
+    const Vec3 away = glm::abs(pose.position);
+    return std::max({away.x, away.y, away.z}) <= farthest;
+}
 
 std::string_view name_of(StepKind kind) { return kinds[static_cast<std::size_t>(kind)]; }
 
@@ -261,24 +261,6 @@ int find_fragment(const CasePlan& plan, std::string_view name) {
     std::vector<std::string> names;
     for (const PlanFragment& fragment : plan.fragments) names.push_back(fragment.name);
     throw Error(fmt::format("the plan has no fragment '{}'{}", name, did_you_mean(name, names)));
-}
-
-PlanStep placing(const CasePlan& plan, int fragment, const Pose& pose, std::string_view by) {
-    fit::Arrangement arrangement = state_of(plan).arrangement;
-    const std::string& name = plan.fragments[static_cast<std::size_t>(fragment)].name;
-    if (!is_valid(pose)) throw Error(fmt::format("'{}' cannot be placed: the pose is not valid", name));
-    if (!arrangement.move(fragment, pose))
-        throw Error(fmt::format("'{}' cannot be moved: it, or one that is grouped with it, is locked", name));
-    PlanStep step;
-    step.by = by;
-    step.fragments.push_back(fragment);
-    step.poses.push_back(arrangement.pose(fragment));
-    for (int other = 0; other < static_cast<int>(arrangement.size()); ++other) {
-        if (other == fragment || !arrangement.move_together(fragment, other)) continue;
-        step.fragments.push_back(other);
-        step.poses.push_back(arrangement.pose(other));
-    }
-    return step;
 }
 
 std::filesystem::path file_of(const std::string& file, const std::filesystem::path& folder) {

@@ -158,8 +158,8 @@ std::vector<PlanFragment> fragments_of(const CasePlan& plan);
 /// Index of a fragment. Throws Error with similar names.
 int find_fragment(const CasePlan& plan, std::string_view name);
 
-/// A step that places a fragment and its group. Throws Error when one of them is locked.
-PlanStep placing(const CasePlan& plan, int fragment, const Pose& pose, std::string_view by);
+/// A pose within 100 m of the origin of the scan: beyond, its numbers are wrong.
+bool is_near(const Pose& pose) noexcept;
 
 /// Adds a fragment and the hash of its file. `folder` is the plan's folder: paths below it are stored relative. Throws
 /// Error for a missing file and for a name in use.

@@ -19,10 +19,12 @@ public:
         hash_.add_bytes(&c.fit, sizeof c.fit);
         add(static_cast<int>(c.basis));
     }
-    void operator()(const JoinFragments& c) const noexcept { add(c.fragment), add(c.other); }
-    void operator()(const SplitFragment& c) const noexcept { add(c.fragment); }
-    void operator()(const LockFragment& c) const noexcept { add(c.fragment), add(c.is_locked ? 1 : 0); }
-    void operator()(const HideFragment& c) const noexcept { add(c.fragment); }
+    void operator()(const JoinFragments& c) const noexcept { add(c.fragments); }
+    void operator()(const AddFragments& c) const noexcept { add(c.group), add(c.fragments); }
+    void operator()(const SplitFragments& c) const noexcept { add(c.fragments); }
+    void operator()(const DissolveGroup& c) const noexcept { add(c.group); }
+    void operator()(const LockFragments& c) const noexcept { add(c.fragments), add(c.is_locked ? 1 : 0); }
+    void operator()(const HideFragments& c) const noexcept { add(c.fragments), add(c.is_hidden ? 1 : 0); }
     void operator()(const GoToAlternative& c) const noexcept { add(c.alternative); }
     void operator()(const DropAlternative& c) const noexcept { add(c.alternative); }
     template <class Bare>
@@ -38,11 +40,25 @@ private:
         static_assert(sizeof(Pose) == 7 * sizeof(double));
         hash_.add_bytes(&pose, sizeof pose);
     }
+    void add(const FragmentSet& fragments) const noexcept {
+        add(static_cast<int>(fragments.count()));
+        for (std::size_t n = 0; n < fragments.size(); ++n)
+            if (fragments[n]) add(static_cast<int>(n));
+    }
     Hash& hash_;
 };
 
-// Places in PlanCommandNumbers.
-constexpr std::size_t at_kind = 0, at_first = 1, at_second = 2, at_switch = 3, at_pose = 4, at_fit = 11;
+consteval std::size_t place_of(std::string_view name) {
+    std::size_t n = 0;
+    while (plan_command_port.at(n).name != name) ++n;
+    return n;
+}
+constexpr std::size_t at_kind = place_of("command"), at_first = place_of("command_first"),
+                      at_second = place_of("command_second"), at_set = place_of("command_set"),
+                      at_switch = place_of("command_switch"), at_pose = place_of("command_x"),
+                      at_fit = place_of("command_score");
+static_assert(plan_command_port[at_kind].most == "13" && std::variant_size_v<PlanCommand> == 13,
+              "the port names every kind");
 
 class CommandWriter {
 public:
@@ -55,12 +71,16 @@ public:
         const FitNumbers& f = c.fit;
         put(at_fit, {f.score, f.margin, f.rms, f.gap, f.penetration, f.overlap});
     }
-    void operator()(const JoinFragments& c) const noexcept { first(c.fragment), second(c.other); }
-    void operator()(const SplitFragment& c) const noexcept { first(c.fragment); }
-    void operator()(const LockFragment& c) const noexcept {
-        first(c.fragment), to_[at_switch] = c.is_locked ? 1.0 : 0.0;
+    void operator()(const JoinFragments& c) const noexcept { set(c.fragments); }
+    void operator()(const AddFragments& c) const noexcept { first(c.group), set(c.fragments); }
+    void operator()(const SplitFragments& c) const noexcept { set(c.fragments); }
+    void operator()(const DissolveGroup& c) const noexcept { first(c.group); }
+    void operator()(const LockFragments& c) const noexcept {
+        set(c.fragments), to_[at_switch] = c.is_locked ? 1.0 : 0.0;
     }
-    void operator()(const HideFragment& c) const noexcept { first(c.fragment); }
+    void operator()(const HideFragments& c) const noexcept {
+        set(c.fragments), to_[at_switch] = c.is_hidden ? 1.0 : 0.0;
+    }
     void operator()(const GoToAlternative& c) const noexcept { first(c.alternative); }
     void operator()(const DropAlternative& c) const noexcept { first(c.alternative); }
     template <class Bare>
@@ -71,6 +91,13 @@ public:
 private:
     void first(int place) const noexcept { to_[at_first] = place; }
     void second(int place) const noexcept { to_[at_second] = place; }
+    void set(const FragmentSet& fragments) const noexcept {
+        double sum = 0.0, power = 1.0;
+        for (std::size_t n = 0; n < max_port_fragments; ++n, power *= 2.0)
+            if (fragments[n]) sum += power;
+        to_[at_set] = sum;
+        if ((fragments >> max_port_fragments).any()) to_[at_kind] = 0.0;
+    }
     void pose(const Pose& p) const noexcept {
         const Vec3& at = p.position;
         const Quat& q = p.orientation;
@@ -86,6 +113,7 @@ struct CommandReader {
     const PlanCommandNumbers& from;
 
     int whole(std::size_t at) const noexcept { return static_cast<int>(from[at]); }
+    FragmentSet set() const noexcept { return {static_cast<unsigned long long>(from[at_set])}; }
     Pose pose() const noexcept {
         const double* const p = from.data() + at_pose;
         return {Vec3(p[0], p[1], p[2]), Quat(p[3], p[4], p[5], p[6])};
@@ -99,10 +127,12 @@ struct CommandReader {
              {f[0], f[1], f[2], f[3], f[4], f[5]},
              static_cast<FitBasis>(whole(at_switch))};
     }
-    void into(JoinFragments& c) const noexcept { c = {whole(at_first), whole(at_second)}; }
-    void into(SplitFragment& c) const noexcept { c = {whole(at_first)}; }
-    void into(LockFragment& c) const noexcept { c = {whole(at_first), from[at_switch] != 0.0}; }
-    void into(HideFragment& c) const noexcept { c = {whole(at_first)}; }
+    void into(JoinFragments& c) const noexcept { c = {set()}; }
+    void into(AddFragments& c) const noexcept { c = {whole(at_first), set()}; }
+    void into(SplitFragments& c) const noexcept { c = {set()}; }
+    void into(DissolveGroup& c) const noexcept { c = {whole(at_first)}; }
+    void into(LockFragments& c) const noexcept { c = {set(), from[at_switch] != 0.0}; }
+    void into(HideFragments& c) const noexcept { c = {set(), from[at_switch] != 0.0}; }
     void into(GoToAlternative& c) const noexcept { c = {whole(at_first)}; }
     void into(DropAlternative& c) const noexcept { c = {whole(at_first)}; }
     template <class Bare>
@@ -122,6 +152,13 @@ struct CommandReader {
 
 }  // namespace
 
+FragmentSet set_of(std::span<const int> fragments) noexcept {
+    FragmentSet set;
+    for (const int n : fragments)
+        if (n >= 0 && static_cast<std::size_t>(n) < set.size()) set[static_cast<std::size_t>(n)] = true;
+    return set;
+}
+
 PlanCommandNumbers numbers_of(const PlanCommand& command) noexcept {
     PlanCommandNumbers numbers{};
     numbers[at_kind] = static_cast<double>(command.index() + 1);
@@ -130,11 +167,12 @@ PlanCommandNumbers numbers_of(const PlanCommand& command) noexcept {
 }
 
 std::optional<PlanCommand> command_of(const PlanCommandNumbers& numbers) noexcept {
-    for (const std::size_t at : {at_kind, at_first, at_second, at_switch})
+    for (const std::size_t at : {at_kind, at_first, at_second, at_set, at_switch})
         if (!(std::abs(numbers[at]) <= 1e6) || numbers[at] != std::floor(numbers[at])) return std::nullopt;
     const double kind = numbers[at_kind];
     if (kind < 1.0 || kind > static_cast<double>(std::variant_size_v<PlanCommand>)) return std::nullopt;
-    if (numbers[at_switch] < 0.0 || numbers[at_switch] > static_cast<double>(FitBasis::mirror)) return std::nullopt;
+    if (numbers[at_switch] < 0.0 || numbers[at_switch] > static_cast<double>(FitBasis::plan)) return std::nullopt;
+    if (numbers[at_set] < 0.0 || numbers[at_set] >= 1 << max_port_fragments) return std::nullopt;
     return CommandReader{numbers}.of_kind(static_cast<std::size_t>(kind) - 1);
 }
 

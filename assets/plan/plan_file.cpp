@@ -4,6 +4,7 @@
 #include "assets/file/json.hpp"
 #include "assets/file/utc_text.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/plan/plan_command.hpp"
 #include "assets/reconstruction/flap_json.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
 #include "dsp/core/error.hpp"
@@ -23,7 +24,6 @@ namespace {
 using file::Json;
 
 constexpr std::string_view format_name = "tactus plan";
-constexpr std::size_t max_fragments = 1000;
 
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 

@@ -9,6 +9,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -24,8 +27,50 @@ std::string verdict_of_basis(FitBasis basis) {
         case FitBasis::fracture: return std::string(fit::name_of(fit::FitVerdict::fit));
         case FitBasis::hand: return "accepted by hand";
         case FitBasis::mirror: return "accepted by mirror";
+        case FitBasis::plan: return "accepted by plan";
     }
     return {};
+}
+
+template <class Each>
+void for_each(const FragmentSet& fragments, const Each& each) {
+    for (std::size_t n = 0; n < fragments.size(); ++n)
+        if (fragments[n]) each(static_cast<int>(n));
+}
+
+/// Applies `change` to each fragment. Returns those that it changed, which the step then names.
+template <class Change>
+FragmentSet changed_by(const FragmentSet& fragments, const Change& change) noexcept {
+    FragmentSet changed;
+    for_each(fragments, [&](int n) { changed[static_cast<std::size_t>(n)] = change(n); });
+    return changed;
+}
+
+FragmentSet applied(fit::Arrangement& to, const JoinFragments& c) noexcept {
+    std::array<int, max_fragments> all;
+    std::size_t count = 0;
+    for_each(c.fragments, [&](int n) { all[count++] = n; });
+    return to.join(std::span(all.data(), count)) != fit::Arrangement::none ? c.fragments : FragmentSet();
+}
+FragmentSet applied(fit::Arrangement& to, const AddFragments& c) noexcept {
+    return changed_by(c.fragments, [&](int n) { return to.add(c.group, n); });
+}
+FragmentSet applied(fit::Arrangement& to, const SplitFragments& c) noexcept {
+    return changed_by(c.fragments, [&](int n) { return to.remove(n); });
+}
+FragmentSet applied(fit::Arrangement& to, const LockFragments& c) noexcept {
+    return changed_by(c.fragments, [&](int n) {
+        const bool is_change = to.is_locked(n) != c.is_locked;
+        to.lock(n, c.is_locked);
+        return is_change;
+    });
+}
+FragmentSet applied(fit::Arrangement& to, const HideFragments& c) noexcept {
+    return changed_by(c.fragments, [&](int n) {
+        const bool is_change = to.is_hidden(n) != c.is_hidden;
+        to.hide(n, c.is_hidden);
+        return is_change;
+    });
 }
 
 }  // namespace
@@ -49,7 +94,15 @@ struct PlanHistory::Apply {
 
     Outcome move(int fragment, const Pose& pose) const noexcept {
         if (!to.has(fragment) || !is_valid(pose)) return Outcome::no_such_fragment;
-        return to.now_.move(fragment, pose) ? Outcome::done : Outcome::locked;
+        if (!to.now_.move(fragment, pose)) return Outcome::locked;
+        for (int n = 0; n < static_cast<int>(to.now_.size()); ++n)
+            if (to.now_.move_together(fragment, n) && !is_near(to.now_.pose(n))) return Outcome::too_far;
+        return Outcome::done;
+    }
+    template <class OfFragments>
+    Outcome change(const OfFragments& c) const noexcept {
+        if ((c.fragments >> to.now_.size()).any() || c.fragments.none()) return Outcome::no_such_fragment;
+        return applied(to.now_, c).any() ? to.add_step() : Outcome::unchanged;
     }
 
     Outcome operator()(const PlaceFragment& c) const noexcept {
@@ -65,35 +118,16 @@ struct PlanHistory::Apply {
         to.now_.fit(c.fragment, c.partner);
         return to.add_step();
     }
-    Outcome operator()(const JoinFragments& c) const noexcept {
-        if (!to.has(c.fragment) || !to.has(c.other)) return Outcome::no_such_fragment;
-        const int both[] = {c.fragment, c.other};
-        return to.now_.join(both) != fit::Arrangement::none ? to.add_step() : Outcome::unchanged;
+    Outcome operator()(const JoinFragments& c) const noexcept { return change(c); }
+    Outcome operator()(const AddFragments& c) const noexcept {
+        return to.now_.exists(c.group) ? change(c) : Outcome::no_such_group;
     }
-    Outcome operator()(const SplitFragment& c) const noexcept {
-        if (!to.has(c.fragment)) return Outcome::no_such_fragment;
-        return to.now_.remove(c.fragment) ? to.add_step() : Outcome::unchanged;
+    Outcome operator()(const SplitFragments& c) const noexcept { return change(c); }
+    Outcome operator()(const DissolveGroup& c) const noexcept {
+        return to.now_.dissolve(c.group) ? to.add_step() : Outcome::no_such_group;
     }
-    Outcome operator()(const LockFragment& c) const noexcept {
-        if (!to.has(c.fragment)) return Outcome::no_such_fragment;
-        if (to.now_.is_locked(c.fragment) == c.is_locked) return Outcome::unchanged;
-        to.now_.lock(c.fragment, c.is_locked);
-        return to.add_step();
-    }
-    Outcome operator()(const HideFragment& c) const noexcept {
-        if (!to.has(c.fragment)) return Outcome::no_such_fragment;
-        if (to.now_.is_hidden(c.fragment)) return Outcome::unchanged;
-        to.now_.hide(c.fragment, true);
-        return to.add_step();
-    }
-    Outcome operator()(const ShowFragments&) const noexcept {
-        bool is_any = false;
-        for (int n = 0; n < static_cast<int>(to.now_.size()); ++n) {
-            is_any = is_any || to.now_.is_hidden(n);
-            to.now_.hide(n, false);
-        }
-        return is_any ? to.add_step() : Outcome::unchanged;
-    }
+    Outcome operator()(const LockFragments& c) const noexcept { return change(c); }
+    Outcome operator()(const HideFragments& c) const noexcept { return change(c); }
     Outcome operator()(const UndoStep&) const noexcept {
         return to.tree_.undo(to.now_) ? Outcome::done : Outcome::nothing_to_undo;
     }
@@ -123,8 +157,8 @@ PlanHistory::Outcome PlanHistory::add_step() noexcept {
 
 PlanHistory::Outcome PlanHistory::go_to(std::size_t alternative) noexcept {
     const bool begins = alternative == alternatives_.size();
-    if (alternative > alternatives_.size() || (begins && alternatives_.size() >= max_alternatives))
-        return Outcome::no_such_alternative;
+    if (alternative > alternatives_.size()) return Outcome::no_such_alternative;
+    if (begins && alternatives_.size() >= max_alternatives) return Outcome::too_many_alternatives;
     if (alternative == alternative_) return Outcome::unchanged;
     alternatives_[alternative_] = tree_.place();
     if (begins) alternatives_.push_back(fit::after_step(tree_.head()));
@@ -147,7 +181,8 @@ PlanHistory::Outcome PlanHistory::drop(std::size_t alternative) noexcept {
 }
 
 PlanHistory::Outcome PlanHistory::restore() noexcept {
-    if (dropped_.empty() || alternatives_.size() >= max_alternatives) return Outcome::no_such_alternative;
+    if (dropped_.empty()) return Outcome::no_such_alternative;
+    if (alternatives_.size() >= max_alternatives) return Outcome::too_many_alternatives;
     alternatives_.push_back(dropped_.back());
     dropped_.pop_back();
     return Outcome::done;
@@ -159,10 +194,13 @@ std::string_view text_of(PlanHistory::Outcome outcome) {
         case done: return "done";
         case unchanged: return "the plan is already so";
         case locked: return "the fragment, or one of its group, is locked";
-        case no_such_fragment: return "there is no such fragment";
+        case no_such_fragment: return "there is no such fragment, or its pose is not valid";
+        case too_far: return "a fragment would lie more than 100 m away; are the numbers in mm?";
+        case no_such_group: return "there is no such group";
         case nothing_to_undo: return "there is no step to undo";
         case nothing_to_redo: return "there is no step to redo";
         case no_such_alternative: return "there is no such alternative to go to, to drop or to bring back";
+        case too_many_alternatives: return "a plan has at most 32 alternatives: remove one first";
     }
     return {};
 }
@@ -179,17 +217,23 @@ std::string ChangedPlan::free_name() const {
             return name;
 }
 
-PlanStep ChangedPlan::step_of(const PlanCommand& command, const fit::Arrangement& before) const {
-    const fit::Arrangement& now = history_.now();
-    const auto count = static_cast<int>(now.size());
+PlanStep ChangedPlan::step_of(const PlanCommand& command, const fit::Arrangement& before,
+                              const std::string& name) const {
     PlanStep step;
     const auto place = [&](int fragment) {
+        const fit::Arrangement& now = history_.now();
         step.kind = StepKind::place;
         step.fragments.push_back(fragment);
-        for (int n = 0; n < count; ++n)
+        for (int n = 0; n < static_cast<int>(now.size()); ++n)
             if (n != fragment && now.move_together(fragment, n)) step.fragments.push_back(n);
         for (const int n : step.fragments) step.poses.push_back(now.pose(n));
     };
+    const auto of_fragments = [&](StepKind kind, const auto& c) {
+        fit::Arrangement then = before;
+        step.kind = kind;
+        for_each(applied(then, c), [&](int n) { step.fragments.push_back(n); });
+    };
+    const auto group_name = [&](int group) { return state_.group_names[static_cast<std::size_t>(group)]; };
     if (const auto* placed = std::get_if<PlaceFragment>(&command)) place(placed->fragment);
     else if (const auto* settled = std::get_if<SettleFragment>(&command)) {
         place(settled->fragment);
@@ -204,30 +248,26 @@ PlanStep ChangedPlan::step_of(const PlanCommand& command, const fit::Arrangement
                                fit.penetration,
                                fit.overlap};
     } else if (const auto* joined = std::get_if<JoinFragments>(&command)) {
-        step.kind = StepKind::group;
-        step.fragments = {joined->fragment, joined->other};
-        step.group = free_group_name(state_);
-    } else if (const auto* split = std::get_if<SplitFragment>(&command)) {
-        step.kind = StepKind::remove;
-        step.fragments = {split->fragment};
-    } else if (const auto* lock = std::get_if<LockFragment>(&command)) {
-        step.kind = lock->is_locked ? StepKind::lock : StepKind::unlock;
-        step.fragments = {lock->fragment};
-    } else if (const auto* hide = std::get_if<HideFragment>(&command)) {
-        step.kind = StepKind::hide;
-        step.fragments = {hide->fragment};
-    } else {
-        step.kind = StepKind::show;
-        for (int n = 0; n < count; ++n)
-            if (before.is_hidden(n)) step.fragments.push_back(n);
-    }
+        of_fragments(StepKind::group, *joined);
+        step.group = name.empty() ? free_group_name(state_) : name;
+    } else if (const auto* added = std::get_if<AddFragments>(&command)) {
+        of_fragments(StepKind::add, *added);
+        step.group = group_name(added->group);
+    } else if (const auto* split = std::get_if<SplitFragments>(&command)) of_fragments(StepKind::remove, *split);
+    else if (const auto* dissolved = std::get_if<DissolveGroup>(&command)) {
+        step.kind = StepKind::ungroup;
+        step.group = group_name(dissolved->group);
+    } else if (const auto* lock = std::get_if<LockFragments>(&command))
+        of_fragments(lock->is_locked ? StepKind::lock : StepKind::unlock, *lock);
+    else if (const auto* hide = std::get_if<HideFragments>(&command))
+        of_fragments(hide->is_hidden ? StepKind::hide : StepKind::show, *hide);
     return step;
 }
 
-void ChangedPlan::follow_alternatives(const PlanCommand& command) {
+void ChangedPlan::follow_alternatives(const PlanCommand& command, const std::string& name) {
     if (std::holds_alternative<GoToAlternative>(command)) {
         if (history_.alternatives() > plan_.alternatives.size())
-            plan_.alternatives.push_back({free_name(), history_.place()});
+            plan_.alternatives.push_back({name.empty() ? free_name() : name, history_.place()});
         plan_.current = static_cast<int>(history_.alternative());
     } else if (const auto* drop = std::get_if<DropAlternative>(&command)) {
         if (dropped_.size() == PlanHistory::max_dropped) dropped_.erase(dropped_.begin());
@@ -242,24 +282,36 @@ void ChangedPlan::follow_alternatives(const PlanCommand& command) {
     state_ = state_of(plan_);
 }
 
-PlanHistory::Outcome ChangedPlan::apply(const PlanCommand& command, std::string_view by, std::optional<double> second) {
+PlanHistory::Outcome ChangedPlan::apply(const PlanCommand& command, const StepWords& words) {
+    if (std::holds_alternative<GoToAlternative>(command) &&
+        std::ranges::find(plan_.alternatives, words.name, &PlanAlternative::name) != plan_.alternatives.end())
+        throw Error(fmt::format("the alternative '{}' exists already", words.name));
     const int count = history_.count();
     const fit::Arrangement before = history_.now();
     const PlanHistory::Outcome outcome = history_.apply(command);
     if (outcome != PlanHistory::Outcome::done) return outcome;
     if (history_.count() == count) {
-        follow_alternatives(command);
+        follow_alternatives(command, words.name);
         return outcome;
     }
-    PlanStep step = step_of(command, before);
-    step.by = by;
-    step.run_second = second;
+    const auto* const settled = std::get_if<SettleFragment>(&command);
+    PlanStep step = step_of(command, before, words.name);
+    step.by = !words.by.empty() ? words.by : settled && settled->basis == FitBasis::fracture ? "settle" : "hand";
+    step.time = words.time;
+    step.run_second = words.run_second;
     try {
         plan::add_step(plan_, state_, std::move(step));
     } catch (const Error&) {
         history_ = PlanHistory(plan_);
         throw;
     }
+    return outcome;
+}
+
+PlanHistory::Outcome change(CasePlan& plan, const PlanCommand& command, const StepWords& words) {
+    ChangedPlan changed(plan);
+    const PlanHistory::Outcome outcome = changed.apply(command, words);
+    if (outcome == PlanHistory::Outcome::done) plan = changed.plan();
     return outcome;
 }
 

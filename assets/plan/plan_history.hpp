@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,10 +32,13 @@ public:
         done,
         unchanged,  ///< the command would change nothing
         locked,  ///< a locked fragment moves together with the one to be moved
-        no_such_fragment,
+        no_such_fragment,  ///< or its pose is not valid
+        too_far,  ///< see is_near
+        no_such_group,
         nothing_to_undo,
         nothing_to_redo,
         no_such_alternative,
+        too_many_alternatives,
     };
     /// If the outcome is not `done`, nothing has changed.
     Outcome apply(const PlanCommand& command) noexcept;
@@ -66,20 +70,27 @@ private:
 /// Reason why a command was not done, for users.
 std::string_view text_of(PlanHistory::Outcome outcome);
 
+/// What a step states besides what its command does.
+struct StepWords {
+    std::string by{};  ///< see PlanStep; empty: "settle" for a fit of fractures, otherwise "hand"
+    std::optional<double> run_second{};  ///< s, since the start of the run
+    std::string time{};  ///< as in PlanStep
+    std::string name{};  ///< of the group or the alternative that the command begins; empty: a free one
+};
+
 /// A plan that commands change: their steps with names, fits and times, beside the history that applied them.
 class ChangedPlan {
 public:
     explicit ChangedPlan(CasePlan plan);
 
-    /// `by`: who gave it, see PlanStep. `second`: since the start of the run. If the outcome is not `done`, the plan is
-    /// unchanged. Throws Error if it would not be valid as a plan file.
-    PlanHistory::Outcome apply(const PlanCommand& command, std::string_view by, std::optional<double> second = {});
+    /// If the outcome is not `done`, the plan is unchanged. Throws Error, without a change, for a name that is taken.
+    PlanHistory::Outcome apply(const PlanCommand& command, const StepWords& words = {});
 
     const CasePlan& plan() const { return plan_; }
 
 private:
-    PlanStep step_of(const PlanCommand& command, const fit::Arrangement& before) const;
-    void follow_alternatives(const PlanCommand& command);
+    PlanStep step_of(const PlanCommand& command, const fit::Arrangement& before, const std::string& name) const;
+    void follow_alternatives(const PlanCommand& command, const std::string& name);
     std::string free_name() const;
 
     CasePlan plan_;
@@ -87,5 +98,8 @@ private:
     PlanHistory history_;
     std::vector<PlanAlternative> dropped_;  // the last one at the end
 };
+
+/// The same for one command.
+PlanHistory::Outcome change(CasePlan& plan, const PlanCommand& command, const StepWords& words);
 
 }  // namespace tactus::plan

@@ -67,8 +67,7 @@ void PlanKeeper::add(const PlanRecord& record, double second) {
     try {
         is_saved_ = false;
         // The run has applied it already, so that it fails only after a loss.
-        const PlanHistory::Outcome outcome = changed_.apply(
-            record.command, std::holds_alternative<SettleFragment>(record.command) ? "settle" : "hand", second);
+        const PlanHistory::Outcome outcome = changed_.apply(record.command, {.run_second = second});
         if (outcome != PlanHistory::Outcome::done && trouble.empty())
             trouble = fmt::format("a command of the run at {:.3f} s is not in the plan: {}", second, text_of(outcome));
     } catch (const Error& error) {

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -22,40 +23,32 @@ namespace tactus::nodes {
 
 /// The port of commands from outside, such as those of a window: parameters, so that a take and a log have them. The
 /// numbers of a command are set first, and its serial number last.
-struct CommandPort {
-    Param command{as_trigger, "0", "0", "12",
-                  "kind of a command from outside: 1 place, 2 settle, 3 join, 4 split, 5 lock, 6 hide, 7 show, 8 undo, "
-                  "9 redo, 10 go to an alternative, 11 drop an alternative, 12 restore the last dropped one; 0: none"};
-    Param command_first{as_trigger, "0", "-1", "1000000", "fragment or alternative"};
-    Param command_second{as_trigger, "0", "-1", "1000000", "the partner of settle and join; -1: none"};
-    Param command_switch{as_trigger, "0", "0", "2",
-                         "lock: 1 locks, 0 unlocks; settle: basis of the pose, 0 the fracture, 1 a surgeon's "
-                         "eye, 2 the mirrored side"};
-    Param command_x{as_trigger, "0 m", "-1000 m", "1000 m", "position of the fragment's file"};
-    Param command_y{as_trigger, "0 m", "-1000 m", "1000 m", "the same"};
-    Param command_z{as_trigger, "0 m", "-1000 m", "1000 m", "the same"};
-    Param command_qw{as_trigger, "1", "-2", "2", "orientation of the fragment's file"};
-    Param command_qx{as_trigger, "0", "-2", "2", "the same"};
-    Param command_qy{as_trigger, "0", "-2", "2", "the same"};
-    Param command_qz{as_trigger, "0", "-2", "2", "the same"};
-    Param command_score{as_trigger, "0", "-1000000", "1000000", "of the fit"};
-    Param command_margin{as_trigger, "0", "-1000000", "1000000", "of the fit"};
-    Param command_rms{as_trigger, "0 m", "-1000 m", "1000 m", "of the fit"};
-    Param command_gap{as_trigger, "0 m", "-1000 m", "1000 m", "of the fit"};
-    Param command_penetration{as_trigger, "0 m", "-1000 m", "1000 m", "of the fit"};
-    Param command_overlap{as_trigger, "0 m^2", "-1000 m^2", "1000 m^2", "of the fit"};
-    Param command_number{as_trigger, "0", "0", "1000000000",
-                         "changed: the command is done once; set it last, to the output 'received' plus 1"};
-    TACTUS_GROUP(command, command_first, command_second, command_switch, command_x, command_y, command_z, command_qw,
-                 command_qx, command_qy, command_qz, command_score, command_margin, command_rms, command_gap,
-                 command_penetration, command_overlap, command_number)
+class CommandPort {
+public:
+    Param number{as_trigger, "0", "0", "1000000000",
+                 "changed: the command is done once; set it last, to the output 'received' plus 1"};
 
-    plan::PlanCommandNumbers numbers() const noexcept {
-        return {command,        command_first, command_second, command_switch,      command_x,      command_y,
-                command_z,      command_qw,    command_qx,     command_qy,          command_qz,     command_score,
-                command_margin, command_rms,   command_gap,    command_penetration, command_overlap};
+    void each(MemberVisitor& visitor) {
+        for (std::size_t n = 0; n < params_.size(); ++n) visitor.param(plan::plan_command_port[n].name, params_[n]);
+        visitor.param("command_number", number);
     }
+    plan::PlanCommandNumbers numbers() const noexcept {
+        plan::PlanCommandNumbers now;
+        std::ranges::copy(params_, now.begin());
+        return now;
+    }
+
+private:
+    static constexpr std::size_t count = plan::plan_command_port.size();
+    template <std::size_t... n>
+    static std::array<Param, count> made(std::index_sequence<n...>) {
+        constexpr const auto& port = plan::plan_command_port;
+        return {{Param(as_trigger, port[n].start, port[n].least, port[n].most, port[n].about)...}};
+    }
+
+    std::array<Param, count> params_ = made(std::make_index_sequence<count>());
 };
+static_assert(tactus::coupling::Scene::max_objects <= plan::max_port_fragments);
 
 struct CaseScene {
     static constexpr auto about =
@@ -183,23 +176,23 @@ private:
         if (edge(join, 1) && meant >= 0) {
             const int other = partner_place();
             keep_held(tick);
-            if (other >= 0) give(tick, plan::JoinFragments{meant, other});
+            if (other >= 0) give(tick, plan::JoinFragments{plan::set_of({meant, other})});
         }
         if (edge(split, 2) && meant >= 0) {
             keep_held(tick);
-            give(tick, plan::SplitFragment{meant});
+            give(tick, plan::SplitFragments{plan::set_of({meant})});
         }
         if (edge(lock, 3) && meant >= 0) {
             keep_held(tick);
-            give(tick, plan::LockFragment{meant, !now_->is_locked(meant)});
+            give(tick, plan::LockFragments{plan::set_of({meant}), !now_->is_locked(meant)});
         }
         if (edge(hide, 6) && meant >= 0 && !now_->is_hidden(meant)) {
             keep_held(tick);
-            give(tick, plan::HideFragment{meant});
+            give(tick, plan::HideFragments{plan::set_of({meant})});
         }
-        if (edge(show, 7) && has_hidden()) {
+        if (edge(show, 7) && hidden().any()) {
             keep_held(tick);
-            give(tick, plan::ShowFragments{});
+            give(tick, plan::HideFragments{hidden(), false});
         }
         const bool back = edge(undo, 4), on = edge(redo, 5);
         if ((back || on) && holding_) held_back_.tell();
@@ -211,8 +204,8 @@ private:
     /// body and its force has faded.
     void receive(const Tick& tick) noexcept {
         // A command that waits is the one that came: the port may hold the next one by then.
-        if (!arrived_ && port.command_number != received_ && port.command_number > 0.0) {
-            arrived_ = port.command_number;
+        if (!arrived_ && port.number != received_ && port.number > 0.0) {
+            arrived_ = port.number;
             command_ = plan::command_of(port.numbers());
         }
         const bool is_new = arrived_.has_value();
@@ -239,14 +232,14 @@ private:
 
     /// Whether a command may move or uncover what the held body touches.
     bool may_be_felt(const plan::PlanCommand& command) const noexcept {
-        const auto is_with_held = [this](int fragment) {
-            return fragment >= 0 && fragment < static_cast<int>(bodies_->count()) &&
-                   now_->move_together(fragment, last_);
+        const auto has_held = [this](const plan::FragmentSet& fragments) {
+            for (int n = 0; n < static_cast<int>(bodies_->count()); ++n)
+                if (fragments[static_cast<std::size_t>(n)] && now_->move_together(n, last_)) return true;
+            return false;
         };
-        if (const auto* joined = std::get_if<plan::JoinFragments>(&command))
-            return is_with_held(joined->fragment) || is_with_held(joined->other);
-        if (const auto* split = std::get_if<plan::SplitFragment>(&command)) return is_with_held(split->fragment);
-        if (const auto* lock = std::get_if<plan::LockFragment>(&command)) return is_with_held(lock->fragment);
+        if (const auto* joined = std::get_if<plan::JoinFragments>(&command)) return has_held(joined->fragments);
+        if (const auto* split = std::get_if<plan::SplitFragments>(&command)) return has_held(split->fragments);
+        if (const auto* lock = std::get_if<plan::LockFragments>(&command)) return has_held(lock->fragments);
         return true;
     }
 
@@ -269,10 +262,13 @@ private:
             case done:
             case unchanged: break;
             case locked: locked_.tell(); break;
-            case no_such_fragment: no_fragment_.tell(); break;
+            case no_such_fragment:
+            case no_such_group:
+            case too_far: no_fragment_.tell(); break;
             case nothing_to_undo: no_earlier_.tell(); break;
             case nothing_to_redo: no_later_.tell(); break;
-            case no_such_alternative: no_alternative_.tell(); break;
+            case no_such_alternative:
+            case too_many_alternatives: no_alternative_.tell(); break;
         }
     }
 
@@ -298,10 +294,11 @@ private:
         if (!settled_ && last_ >= 0 && now_->can_move(last_)) give(tick, plan::PlaceFragment{last_, now_->pose(last_)});
     }
 
-    bool has_hidden() const noexcept {
+    plan::FragmentSet hidden() const noexcept {
+        plan::FragmentSet all;
         for (int n = 0; n < static_cast<int>(bodies_->count()); ++n)
-            if (now_->is_hidden(n)) return true;
-        return false;
+            all[static_cast<std::size_t>(n)] = now_->is_hidden(n);
+        return all;
     }
 
     int partner_place() const noexcept {
@@ -346,9 +343,10 @@ private:
     Notice held_back_{"nothing is undone or redone while a fragment is held: let it go first"};
     Notice no_earlier_{"there is no step to undo"};
     Notice no_later_{"there is no step to redo"};
-    Notice no_alternative_{"there is no such alternative to go to, to drop or to bring back"};
+    Notice no_alternative_{"there is no such alternative to go to, to drop or to bring back, or there are 32 already"};
     Notice locked_{"nothing was moved: the fragment, or one of its group, is locked"};
-    Notice no_fragment_{"a command from outside names a fragment or a pose that is not there"};
+    Notice no_fragment_{
+        "a command from outside names a fragment or a group that is not there, or a pose that is not possible"};
     Notice no_command_{"a command from outside has no such kind, or names no whole number of a fragment"};
     Notice not_released_{
         "a command was not done, because a hand holds a fragment and does not release it: let it go first, or wire "

@@ -46,19 +46,22 @@ plan::PlanCommand any(const Random& random, std::uint64_t n) {
     };
     const int a = below(1, 5.2), b = below(2, 5.0);
     const Pose pose = at(0.05 * random.uniform(16 * n + 3), Vec3(random.uniform(16 * n + 4), 0.3, -0.2));
-    switch (below(0, 13.0)) {
+    const plan::FragmentSet some = plan::set_of({a, b, below(8, 5.0)});
+    switch (below(0, 15.0)) {
         case 0:
         case 1: return plan::PlaceFragment{a, pose};
         case 2: return plan::SettleFragment{a, b, pose, {0.9, 0.1, 1e-4, 2e-4, 3e-4, 4e-5}};
-        case 3: return plan::JoinFragments{a, b};
-        case 4: return plan::SplitFragment{a};
-        case 5: return plan::LockFragment{a, below(5, 3.0) == 0};
-        case 6: return plan::HideFragment{a};
-        case 7: return plan::ShowFragments{};
-        case 8: return plan::UndoStep{};
-        case 9: return plan::RedoStep{};
-        case 10: return plan::GoToAlternative{below(6, 5.0)};
-        case 11: return plan::DropAlternative{below(7, 4.0)};
+        case 3: return plan::JoinFragments{below(5, 2.0) == 0 ? some : plan::set_of({a, b})};
+        case 4: return plan::AddFragments{below(5, 3.0), some};
+        case 5: return plan::SplitFragments{some};
+        case 6: return plan::DissolveGroup{below(5, 3.0)};
+        case 7: return plan::LockFragments{plan::set_of({a}), below(5, 3.0) == 0};
+        case 8: return plan::HideFragments{some, below(5, 2.0) == 0};
+        case 9: return plan::UndoStep{};
+        case 10: return plan::RedoStep{};
+        case 11: return plan::GoToAlternative{below(6, 5.0)};
+        case 12: return plan::DropAlternative{below(7, 4.0)};
+        case 13: return plan::LockFragments{some, false};
         default: return plan::RestoreAlternative{};
     }
 }
@@ -76,7 +79,7 @@ TEST_CASE("the plan file of any commands has the state of the run to the bit aft
             const Outcome outcome = run.apply(command);
             outcomes.insert(outcome);
             INFO("seed " << seed << ", command " << n << " of kind " << command.index());
-            REQUIRE(file.apply(command, "hand") == outcome);
+            REQUIRE(file.apply(command) == outcome);
             const plan::CasePlan read = plan::read_plan_text(plan::plan_text(file.plan()), "test");
             REQUIRE(is_same(plan::state_of(read).arrangement, run.now()));
             REQUIRE(read.place().head == run.place().head);
@@ -98,15 +101,21 @@ TEST_CASE("a command that is refused changes nothing and says why") {
     plan::PlanHistory history(five());
     CHECK(history.apply(plan::UndoStep{}) == Outcome::nothing_to_undo);
     CHECK(history.apply(plan::RedoStep{}) == Outcome::nothing_to_redo);
-    REQUIRE(history.apply(plan::JoinFragments{0, 1}) == Outcome::done);
-    REQUIRE(history.apply(plan::LockFragment{1, true}) == Outcome::done);
+    REQUIRE(history.apply(plan::JoinFragments{plan::set_of({0, 1})}) == Outcome::done);
+    REQUIRE(history.apply(plan::LockFragments{plan::set_of({1}), true}) == Outcome::done);
     const fit::Arrangement before = history.now();
     CHECK(history.apply(plan::PlaceFragment{0, at(0.1)}) == Outcome::locked);
     CHECK(history.apply(plan::PlaceFragment{5, at(0.1)}) == Outcome::no_such_fragment);
     CHECK(history.apply(plan::PlaceFragment{2, at(1e-7)}) == Outcome::unchanged);
-    CHECK(history.apply(plan::JoinFragments{1, 0}) == Outcome::unchanged);
-    CHECK(history.apply(plan::LockFragment{1, true}) == Outcome::unchanged);
-    CHECK(history.apply(plan::ShowFragments{}) == Outcome::unchanged);
+    CHECK(history.apply(plan::JoinFragments{plan::set_of({1, 0})}) == Outcome::unchanged);
+    CHECK(history.apply(plan::LockFragments{plan::set_of({1}), true}) == Outcome::unchanged);
+    CHECK(history.apply(plan::HideFragments{plan::set_of({0, 3}), false}) == Outcome::unchanged);
+    CHECK(history.apply(plan::JoinFragments{plan::set_of({2})}) == Outcome::unchanged);
+    CHECK(history.apply(plan::JoinFragments{}) == Outcome::no_such_fragment);
+    CHECK(history.apply(plan::HideFragments{plan::set_of({2, 5})}) == Outcome::no_such_fragment);
+    CHECK(history.apply(plan::AddFragments{3, plan::set_of({2})}) == Outcome::no_such_group);
+    CHECK(history.apply(plan::DissolveGroup{3}) == Outcome::no_such_group);
+    CHECK(history.apply(plan::PlaceFragment{2, at(60.0)}) == Outcome::too_far);
     CHECK(history.apply(plan::GoToAlternative{3}) == Outcome::no_such_alternative);
     CHECK(history.apply(plan::DropAlternative{0}) == Outcome::no_such_alternative);
     CHECK(history.apply(plan::SettleFragment{2, 2, at(0.1), {}}) == Outcome::no_such_fragment);
@@ -132,7 +141,7 @@ TEST_CASE("a command that passes as numbers is the same to the bit, and numbers 
         kinds.insert(command.index());
     }
     CHECK(kinds.size() == std::variant_size_v<plan::PlanCommand>);
-    for (const double kind : {0.0, -1.0, 0.5, 13.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const double kind : {0.0, -1.0, 0.5, 14.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
         plan::PlanCommandNumbers numbers = plan::numbers_of(plan::PlaceFragment{1, at(0.1)});
         numbers[0] = kind;
         CHECK_FALSE(plan::command_of(numbers));
@@ -144,8 +153,9 @@ TEST_CASE("a command that passes as numbers is the same to the bit, and numbers 
 
 TEST_CASE("a decision of a surgeon is a step that names what it rests on") {
     plan::ChangedPlan changed(five());
-    REQUIRE(changed.apply(plan::SettleFragment{1, 0, at(0.1), {}, plan::FitBasis::hand}, "command") == Outcome::done);
+    REQUIRE(changed.apply(plan::SettleFragment{1, 0, at(0.1), {}, plan::FitBasis::hand}) == Outcome::done);
     CHECK(changed.plan().steps.back().fit->verdict == "accepted by hand");
+    CHECK(changed.plan().steps.back().by == "hand");
 }
 
 TEST_CASE("equal commands have equal hashes whatever lies between their fields, and others do not") {
@@ -162,8 +172,8 @@ TEST_CASE("equal commands have equal hashes whatever lies between their fields, 
                                      plan::SettleFragment{1, 2, at(0.1), {}},
                                      plan::SettleFragment{1, 2, at(0.1), {0.5, 0, 0, 0, 0, 0}},
                                      plan::SettleFragment{1, 2, at(0.1), {}, plan::FitBasis::hand},
-                                     plan::LockFragment{1, true},
-                                     plan::LockFragment{1, false},
+                                     plan::LockFragments{plan::set_of({1}), true},
+                                     plan::LockFragments{plan::set_of({1}), false},
                                      plan::UndoStep{},
                                      plan::RedoStep{},
                                      plan::GoToAlternative{1},

@@ -175,11 +175,11 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
 TEST_CASE("commands that were lost or cannot be applied are reported and the others are kept") {
     const TemporaryFolder folder;
     plan::PlanKeeper keeper(two(), folder / "case.plan.json");
-    keeper.add({0, plan::LockFragment{0, true}}, 0.1);
+    keeper.add({0, plan::LockFragments{plan::set_of({0}), true}}, 0.1);
     CHECK(keeper.trouble().empty());
-    keeper.add({3, plan::LockFragment{1, true}}, 0.2);
+    keeper.add({3, plan::LockFragments{plan::set_of({1}), true}}, 0.2);
     CHECK(keeper.trouble() == "2 commands of the run did not reach the plan, before 0.200 s");
-    keeper.add({4, plan::LockFragment{7, true}}, 0.3);
+    keeper.add({4, plan::LockFragments{plan::set_of({7}), true}}, 0.3);
     keeper.finish();
     CHECK(plan::load_case_plan(folder / "case.plan.json").steps.size() == 2);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The matcher and the scene of a case in which nothing is locked, or a fit has become void.
 #include "assets/library/fragments.hpp"
+#include "assets/plan/plan_history.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "graph/node/assets.hpp"
@@ -73,12 +74,10 @@ TEST_CASE("a matcher that has nothing to fit to says so, with what to do") {
 
 TEST_CASE("a fragment whose partner has moved away no longer stands") {
     const auto plan = broken_or_locked(false);
-    plan::PlanStep fitted = plan::placing(plan->plan, 1, {}, "snap");
-    fitted.fit = plan::PlanFit{"left", "fit", 0.8, 0.5, 1e-4, 0.0, 0.0, 1e-4};
-    plan::add_step(plan->plan, fitted);
+    plan::change(plan->plan, plan::SettleFragment{1, 0, {}, {0.8, 0.5, 1e-4, 0.0, 0.0, 1e-4}}, {});
     CHECK(shown(plan).objects[1].stands);
-    plan::add_step(plan->plan, plan::placing(plan->plan, 0, {Vec3(0.0, 0.0, 1.0) * mm, {1.0, 0.0, 0.0, 0.0}}, "hand"));
+    plan::change(plan->plan, plan::PlaceFragment{0, {Vec3(0.0, 0.0, 1.0) * mm, {1.0, 0.0, 0.0, 0.0}}}, {});
     CHECK_FALSE(shown(plan).objects[1].stands);
-    plan->plan.place() = fit::undone(plan->plan.before(), plan->plan.place());
+    plan::change(plan->plan, plan::UndoStep{}, {});
     CHECK(shown(plan).objects[1].stands);
 }

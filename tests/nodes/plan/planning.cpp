@@ -59,14 +59,9 @@ struct Session {
     }
     /// A command from outside, as a window gives it.
     void command(const plan::PlanCommand& command) {
-        constexpr const char* names[] = {"command",        "command_first", "command_second", "command_switch",
-                                         "command_x",      "command_y",     "command_z",      "command_qw",
-                                         "command_qx",     "command_qy",    "command_qz",     "command_score",
-                                         "command_margin", "command_rms",   "command_gap",    "command_penetration",
-                                         "command_overlap"};
         const plan::PlanCommandNumbers numbers = plan::numbers_of(command);
-        static_assert(std::size(names) == std::tuple_size_v<plan::PlanCommandNumbers>);
-        for (std::size_t n = 0; n < numbers.size(); ++n) node.set_value(names[n], numbers[n]);
+        for (std::size_t n = 0; n < numbers.size(); ++n)
+            node.set_value(std::string(plan::plan_command_port[n].name), numbers[n]);
         node.set_value("command_number", static_cast<double>(++commands));
     }
     coupling::Scene scene() const { return node.last<coupling::Scene>("scene"); }
@@ -80,8 +75,7 @@ struct Session {
         plan::ChangedPlan changed(broken()->plan);
         const auto& stream = *node.host.records[0];
         for (const plan::PlanRecord& record : stream.values<plan::PlanRecord>()) {
-            const bool settles = std::holds_alternative<plan::SettleFragment>(record.command);
-            CHECK(changed.apply(record.command, settles ? "settle" : "hand", 0.0) == plan::PlanHistory::Outcome::done);
+            CHECK(changed.apply(record.command) == plan::PlanHistory::Outcome::done);
         }
         return changed.plan();
     }
@@ -284,10 +278,10 @@ TEST_CASE("commands from outside are each done once and in their order, and the 
     const plan::PlanStep settled = session.plan().steps.back();
     CHECK(settled.fit->verdict == "accepted by hand");
     CHECK(settled.fit->gap == 2e-4);
-    session.command(plan::JoinFragments{2, 1});
+    session.command(plan::JoinFragments{plan::set_of({1, 2})});
     node.run(300);
     CHECK(session.scene().objects[2].unit == session.scene().objects[1].unit);
-    CHECK(session.plan().steps.back().fragments == std::vector<int>{2, 1});
+    CHECK(session.plan().steps.back().fragments == std::vector<int>{1, 2});
     // Both go together.
     const std::size_t steps = session.plan().steps.size();
     session.command(plan::PlaceFragment{1, Pose{}});
@@ -333,7 +327,7 @@ TEST_CASE("a command that a hand may feel asks for its release and is done after
     NodeHarness& node = session.node;
     const Pose place{Vec3(0.0, 40.0, 0.0) * mm, {1.0, 0.0, 0.0, 0.0}};
     // Nothing of the held one: it is done at once.
-    session.command(plan::LockFragment{2, true});
+    session.command(plan::LockFragments{plan::set_of({2}), true});
     node.run(10);
     CHECK(node.last<double>("received") == 1.0);
     CHECK_FALSE(node.last<bool>("release"));

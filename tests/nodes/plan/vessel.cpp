@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A vessel under the hand: what is felt is what is reported, it gives no energy, and it rests while nobody holds it.
+#include "assets/plan/plan_history.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/constants.hpp"
@@ -376,7 +377,7 @@ TEST_CASE("a piece near its planned place is pulled to it, with the piece that i
     lock.fragments = {1};
     plan::add_step(planned->plan, lock);
     const Pose goal{Vec3(0.0, 0.0, -3.0 * mm), rotation_by(Vec3(0.0, 0.0, 0.2))};
-    plan::add_step(planned->plan, plan::placing(planned->plan, 2, goal, "command"));
+    plan::change(planned->plan, plan::PlaceFragment{2, goal}, {});
     planned->plan.place().head = 0;
     NodeHarness shown("case_scene", {.period = flicks_per_second / 1000});
     shown.asset("plan", planned).disconnect_optional();

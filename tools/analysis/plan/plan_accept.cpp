@@ -103,19 +103,10 @@ double plan_residual(const plan::CasePlan& plan, const plan::PlanState& state, c
     return 0.0;
 }
 
-const char* verdict_of(AcceptedBy by) {
-    switch (by) {
-        case AcceptedBy::hand: return "accepted by hand";
-        case AcceptedBy::mirror: return "accepted by mirror";
-        case AcceptedBy::plan: return "accepted by plan";
-    }
-    return "";
-}
-
 }  // namespace
 
 Acceptance measure_acceptance(const plan::CasePlan& plan, const std::filesystem::path& folder, int fragment,
-                              AcceptedBy by, std::optional<int> partner) {
+                              plan::FitBasis by, std::optional<int> partner) {
     const plan::PlanState state = plan::state_of(plan);
     if (partner == fragment) throw Error(fmt::format("'{}' cannot be its own partner", name_in(plan, fragment)));
     const std::vector<int> partners = partner ? std::vector<int>{*partner} : partners_for(plan, state, fragment);
@@ -124,28 +115,22 @@ Acceptance measure_acceptance(const plan::CasePlan& plan, const std::filesystem:
             throw Error(fmt::format("'{}' is hidden; show it with 'tactus plan unhide'", name_in(plan, n)));
     plan::check_files(plan, folder);
     Acceptance found;
-    if (by == AcceptedBy::mirror) found.residual = mirror_residual(plan, state, folder, fragment);
-    if (by == AcceptedBy::plan) found.residual = plan_residual(plan, state, folder, fragment);
+    if (by == plan::FitBasis::mirror) found.residual = mirror_residual(plan, state, folder, fragment);
+    if (by == plan::FitBasis::plan) found.residual = plan_residual(plan, state, folder, fragment);
     measure_neighbour(found, plan, state, folder, fragment, partners);
-    if (by == AcceptedBy::hand)
+    if (by == plan::FitBasis::hand)
         found.residual = found.facing > 0.0        ? std::abs(found.gap)
                          : found.penetration > 0.0 ? found.penetration
                                                    : found.apart;
     return found;
 }
 
-plan::PlanStep step_of(const plan::CasePlan& plan, int fragment, AcceptedBy by, const Acceptance& found) {
-    const Pose pose = plan::state_of(plan).arrangement.pose(fragment);
-    plan::PlanStep step = plan::placing(plan, fragment, pose, "hand");
-    plan::PlanFit record;
-    record.partner = found.partner;
-    record.verdict = verdict_of(by);
-    record.rms = found.residual;
-    record.gap = found.gap;
-    record.penetration = found.penetration;
-    record.overlap = found.facing;
-    step.fit = record;
-    return step;
+plan::SettleFragment accepting(const plan::CasePlan& plan, int fragment, plan::FitBasis by, const Acceptance& found) {
+    return {fragment,
+            plan::find_fragment(plan, found.partner),
+            plan::state_of(plan).arrangement.pose(fragment),
+            {0.0, 0.0, found.residual, found.gap, found.penetration, found.facing},
+            by};
 }
 
 }  // namespace tactus::analysis

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/plan/plan_case.hpp"
 
+#include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 #include "tools/analysis/workers.hpp"
 
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace tactus::analysis {
@@ -32,6 +34,17 @@ fit::PlacedBone placed_bone(const CaseFragment& fragment, const Pose& pose) {
 }
 
 double shown_mm(double millimetres) { return std::round(millimetres * 100.0) / 100.0 + 0.0; }
+
+bool change_plan(plan::CasePlan& plan, const plan::PlanCommand& command, plan::StepWords words,
+                 const std::filesystem::path& path) {
+    using Outcome = plan::PlanHistory::Outcome;
+    words.time = plan::time_of_day();
+    const Outcome outcome = plan::change(plan, command, words);
+    if (outcome == Outcome::unchanged) return false;
+    if (outcome != Outcome::done) throw Error(std::string(plan::text_of(outcome)));
+    plan::save_case_plan(plan, path);
+    return true;
+}
 
 void do_step(plan::CasePlan& plan, plan::PlanStep step, const std::filesystem::path& path) {
     step.time = plan::time_of_day();

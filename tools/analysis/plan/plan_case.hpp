@@ -4,6 +4,7 @@
 
 #include "assets/plan/case_bones.hpp"
 #include "assets/plan/plan_file.hpp"
+#include "assets/plan/plan_history.hpp"
 #include "assets/plan/plan_lock.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/fit/overlap.hpp"
@@ -40,7 +41,12 @@ struct OpenPlan {
     explicit OpenPlan(const std::filesystem::path& path) : lock(path), plan(plan::load_case_plan(path)) {}
 };
 
-/// Adds a step with the time of day and saves the plan.
+/// Applies a command to a plan, as a run and the window do, and saves the plan with the time of day. False: the plan is
+/// already so, and was not written. Throws Error if the command cannot be done.
+bool change_plan(plan::CasePlan& plan, const plan::PlanCommand& command, plan::StepWords words,
+                 const std::filesystem::path& path);
+
+/// Adds a step that no command makes, as that of a reconstruction, with the time of day and saves the plan.
 void do_step(plan::CasePlan& plan, plan::PlanStep step, const std::filesystem::path& path);
 
 }  // namespace tactus::analysis

@@ -16,12 +16,6 @@ namespace tactus::analysis {
 
 namespace {
 
-plan::PlanFit record_of(const fit::FragmentMatch& match, const std::string& partner) {
-    const fit::FitQuality& q = match.quality;
-    return {partner,  std::string(fit::name_of(match.verdict)), q.score, match.margin, q.rms, q.gap, q.penetration,
-            q.overlap};
-}
-
 std::vector<Pose> poses_of(const fit::Arrangement& a) {
     std::vector<Pose> poses;
     for (int n = 0; n < static_cast<int>(a.size()); ++n) poses.push_back(a.pose(n));
@@ -183,10 +177,13 @@ PlanMatch PlanMatching::anywhere(const fit::Arrangement& arrangement, int moving
     });
 }
 
-plan::PlanStep step_of(const plan::CasePlan& plan, const fit::FragmentMatch& match, const char* by) {
-    plan::PlanStep step = plan::placing(plan, match.moving, match.pose, by);
-    step.fit = record_of(match, plan.fragments[static_cast<std::size_t>(match.partner)].name);
-    return step;
+plan::SettleFragment settling(const fit::FragmentMatch& match) {
+    const fit::FitQuality& q = match.quality;
+    // Only a fit connects: at any other place the step names no partner.
+    return {match.moving,
+            match.verdict == fit::FitVerdict::fit ? match.partner : fit::Arrangement::none,
+            match.pose,
+            {q.score, match.margin, q.rms, q.gap, q.penetration, q.overlap}};
 }
 
 std::optional<TargetDistances> target_distances(const plan::PlanState& state, const std::filesystem::path& folder,

@@ -87,8 +87,8 @@ private:
     std::unique_ptr<fit::FragmentMatcher> matcher_;
 };
 
-/// The step that places a fragment at its fit. `by`: origin of the step.
-plan::PlanStep step_of(const plan::CasePlan& plan, const fit::FragmentMatch& match, const char* by);
+/// The command that places a fragment at its match.
+plan::SettleFragment settling(const fit::FragmentMatch& match);
 
 /// Median distances of a whole fragment to the healthy side, m, at two poses; empty if the plan has no healthy side.
 struct TargetDistances {

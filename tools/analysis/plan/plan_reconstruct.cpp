@@ -19,6 +19,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace tactus::analysis {
@@ -243,22 +244,20 @@ MadeReconstruction make_reconstruction(const reconstruction::ReconstructionInput
                            bone::label_colour(static_cast<int>(whole.fragments.size())));
         load_fragment(plan.fragments.back(), folder);
     }
-    const auto add = [&plan](plan::PlanStep step) {
-        step.time = plan::time_of_day();
-        plan::add_step(plan, std::move(step));
-    };
     const std::vector<int> numbers = whole.fragments;
-    add(std::move(whole));
+    whole.time = plan::time_of_day();
+    plan::add_step(plan, std::move(whole));
+    const auto change = [&plan](const plan::PlanCommand& command) {
+        using Outcome = plan::PlanHistory::Outcome;
+        const Outcome outcome = plan::change(plan, command, {.by = "command", .time = plan::time_of_day()});
+        if (outcome != Outcome::done && outcome != Outcome::unchanged) throw Error(std::string(plan::text_of(outcome)));
+    };
     if (inputs.jaw && inputs.resection != reconstruction::Resection::none) {
-        plan::PlanStep hide;
-        hide.kind = plan::StepKind::hide;
-        hide.by = "command";
-        hide.fragments = {numbers[0]};
-        add(hide);
+        change(plan::HideFragments{plan::set_of(std::span(numbers).first(1))});
     }
     const std::size_t first = numbers.size() - made.fibula.segments.size();
     for (std::size_t n = 0; n < made.fibula.segments.size(); ++n)
-        add(plan::placing(plan, numbers[first + n], made.fibula.segments[n].donor_to_target, "command"));
+        change(plan::PlaceFragment{numbers[first + n], made.fibula.segments[n].donor_to_target});
     plan::save_case_plan(plan, path);
     files.is_kept = true;
     return made;

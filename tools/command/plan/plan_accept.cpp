@@ -18,14 +18,14 @@ int accept_place(const AcceptChoice& choice) {
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const int fragment = plan::find_fragment(plan, choice.names.front());
-    const analysis::AcceptedBy by = choice.by == "mirror" ? analysis::AcceptedBy::mirror
-                                    : choice.by == "plan" ? analysis::AcceptedBy::plan
-                                                          : analysis::AcceptedBy::hand;
+    const plan::FitBasis by = choice.by == "mirror" ? plan::FitBasis::mirror
+                              : choice.by == "plan" ? plan::FitBasis::plan
+                                                    : plan::FitBasis::hand;
     std::optional<int> beside;
     if (!choice.beside.empty()) beside = plan::find_fragment(plan, choice.beside);
     const analysis::Acceptance found =
         analysis::measure_acceptance(plan, choice.plan.parent_path(), fragment, by, beside);
-    analysis::do_step(plan, analysis::step_of(plan, fragment, by, found), choice.plan);
+    analysis::change_plan(plan, analysis::accepting(plan, fragment, by, found), {.by = "hand"}, choice.plan);
     if (choice.json) return show_change(choice);
     fmt::print("{}: accepted by {} beside {}, residual {:.2f} mm; ", choice.names.front(), choice.by, found.partner,
                found.residual * 1e3);

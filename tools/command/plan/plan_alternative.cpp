@@ -29,30 +29,35 @@ int list_alternatives(const PlanChoice& choice) {
 
 int go_to_alternative(const AlternativeChoice& choice) {
     if (choice.alternative.empty()) return list_alternatives(choice);
-    analysis::OpenPlan open(choice.plan);
-    plan::CasePlan& plan = open.plan;
-    const auto find = [&plan](const std::string& name) {
-        return std::ranges::find(plan.alternatives, name, &plan::PlanAlternative::name);
+    const analysis::OpenPlan open(choice.plan);
+    plan::ChangedPlan changed(open.plan);
+    const auto find = [&changed](const std::string& name) {
+        const std::vector<plan::PlanAlternative>& all = changed.plan().alternatives;
+        return static_cast<int>(std::ranges::find(all, name, &plan::PlanAlternative::name) - all.begin());
     };
-    auto found = find(choice.alternative);
+    const auto apply = [&changed](const plan::PlanCommand& command, const std::string& name = {}) {
+        using Outcome = plan::PlanHistory::Outcome;
+        const Outcome outcome = changed.apply(command, {.name = name});
+        if (outcome != Outcome::done && outcome != Outcome::unchanged) throw Error(std::string(plan::text_of(outcome)));
+    };
+    const int found = find(choice.alternative), count = static_cast<int>(open.plan.alternatives.size());
     if (choice.remove) {
-        if (found == plan.alternatives.end() || found - plan.alternatives.begin() == plan.current)
-            throw Error(
-                fmt::format("'{}' cannot be removed: {}", choice.alternative,
-                            found == plan.alternatives.end() ? "it does not exist" : "it is the current alternative"));
-        if (found - plan.alternatives.begin() < plan.current) --plan.current;
-        plan.alternatives.erase(found);
-    } else if (found == plan.alternatives.end()) {
-        const auto from = choice.from.empty() ? plan.alternatives.begin() + plan.current : find(choice.from);
-        if (from == plan.alternatives.end())
-            throw Error(fmt::format("there is no alternative '{}' to begin from", choice.from));
-        plan.alternatives.push_back({choice.alternative, fit::after_step(from->place.head)});
-        plan.current = static_cast<int>(plan.alternatives.size()) - 1;
+        if (found == count || found == open.plan.current)
+            throw Error(fmt::format("'{}' cannot be removed: {}", choice.alternative,
+                                    found == count ? "it does not exist" : "it is the current alternative"));
+        apply(plan::DropAlternative{found});
+    } else if (found == count) {
+        if (!choice.from.empty()) {
+            if (find(choice.from) == count)
+                throw Error(fmt::format("there is no alternative '{}' to begin from", choice.from));
+            apply(plan::GoToAlternative{find(choice.from)});
+        }
+        apply(plan::GoToAlternative{count}, choice.alternative);
     } else if (!choice.from.empty()) {
         throw Error(
             fmt::format("the alternative '{}' exists already; leave out --from to switch to it", choice.alternative));
-    } else plan.current = static_cast<int>(found - plan.alternatives.begin());
-    plan::save_case_plan(plan, choice.plan);
+    } else apply(plan::GoToAlternative{found});
+    plan::save_case_plan(changed.plan(), choice.plan);
     return show_change(choice);
 }
 

@@ -23,9 +23,9 @@ using file::Json;
 void add_steps(plan::CasePlan& plan, const analysis::PlanAssembly& made) {
     const std::string now = plan::time_of_day();
     for (const analysis::PlanMatch& placed : made.placed) {
-        plan::PlanStep step = analysis::step_of(plan, placed.match, "assemble");
-        step.time = now;
-        plan::add_step(plan, std::move(step));
+        using Outcome = plan::PlanHistory::Outcome;
+        const Outcome outcome = plan::change(plan, analysis::settling(placed.match), {.by = "assemble", .time = now});
+        if (outcome != Outcome::done) throw Error(std::string(plan::text_of(outcome)));
     }
 }
 

@@ -14,20 +14,18 @@ struct HistoryChoice : PlanChoice {
     int steps = 1;
 };
 
-int go(const HistoryChoice& choice, fit::HistoryPlace (*way)(std::span<const int>, fit::HistoryPlace),
-       const char* end) {
-    analysis::OpenPlan open(choice.plan);
-    plan::CasePlan& plan = open.plan;
-    const auto before = plan.before();
+int go(const HistoryChoice& choice, const plan::PlanCommand& command) {
+    using Outcome = plan::PlanHistory::Outcome;
+    const analysis::OpenPlan open(choice.plan);
+    plan::ChangedPlan changed(open.plan);
+    const plan::CasePlan& plan = changed.plan();
     int moved = 0;
-    for (; moved < choice.steps; ++moved) {
-        const fit::HistoryPlace next = way(before, plan.place());
-        if (next.head == plan.place().head) break;
-        plan.place() = next;
-    }
+    Outcome outcome = Outcome::done;
+    while (moved < choice.steps && (outcome = changed.apply(command)) == Outcome::done) ++moved;
     if (moved > 0) plan::save_case_plan(plan, choice.plan);
+    const auto before = plan.before();
     if (!choice.json) {
-        if (moved == 0) fmt::print("{}\n", end);
+        if (moved == 0) fmt::print("{}\n", plan::text_of(outcome));
         else
             fmt::print("{}; {} of {} are done\n", counted(moved, "step"),
                        fit::steps_to(before, plan.place().head).size(), fit::steps_to(before, plan.place().tip).size());
@@ -47,13 +45,13 @@ std::shared_ptr<HistoryChoice> choice_of(VerbOptions& verb) {
 
 Verb plan_undo_verb() {
     return {"undo", "undo steps; they stay in the plan", [](VerbOptions& verb) -> Action {
-                return [choice = choice_of(verb)] { return go(*choice, fit::undone, "there is nothing to undo"); };
+                return [choice = choice_of(verb)] { return go(*choice, plan::UndoStep{}); };
             }};
 }
 
 Verb plan_redo_verb() {
     return {"redo", "redo steps", [](VerbOptions& verb) -> Action {
-                return [choice = choice_of(verb)] { return go(*choice, fit::redone, "there is nothing to redo"); };
+                return [choice = choice_of(verb)] { return go(*choice, plan::RedoStep{}); };
             }};
 }
 

@@ -102,7 +102,8 @@ Json compare_others(plan::CasePlan& plan, analysis::MirrorStudy& laid, const std
         compared.push_back(comparison_json(name, found));
         if (!choice.json) print_comparison(name, choice.names[0], found);
         if (choice.settle)
-            analysis::do_step(plan, plan::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
+            analysis::change_plan(plan, plan::PlaceFragment{other, found.registration.pose}, {.by = "mirror"},
+                                  choice.plan);
     }
     return compared;
 }

@@ -25,12 +25,13 @@ int move_fragment(const MoveChoice& choice) {
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const int fragment = plan::find_fragment(plan, choice.names.front());
-    analysis::do_step(plan, plan::placing(plan, fragment, pose, "command"), choice.plan);
+    const bool is_moved =
+        analysis::change_plan(plan, plan::PlaceFragment{fragment, pose}, {.by = "command"}, choice.plan);
     constexpr double far = 2.0;  // m: no bone is that long, nor that far from the origin of its scan
     if (glm::length(pose.position) > far)
         fmt::print(stderr, "note: the position is {:.1f} m from the origin of the scan; are the numbers in mm?\n",
                    glm::length(pose.position));
-    return show_change(choice);
+    return show_change(choice, is_moved);
 }
 
 Action declare_plan_move(VerbOptions& verb) {

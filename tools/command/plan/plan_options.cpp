@@ -35,8 +35,9 @@ void print_warnings(const analysis::CaseWarnings& warnings) {
             if (warning.is_fault == is_fault) fmt::print("{} {}\n", is_fault ? "!" : "warning:", warning.text);
 }
 
-int show_change(const PlanChoice& choice) {
+int show_change(const PlanChoice& choice, bool is_changed) {
     if (choice.json) return show_plan(choice);
+    if (!is_changed) fmt::print("the plan is already so\n");
     return done;
 }
 

@@ -35,7 +35,7 @@ void print_warnings(const analysis::CaseWarnings& warnings);
 
 /// Prints the plan as text or JSON on standard output.
 int show_plan(const PlanChoice& choice);
-/// Prints the plan after a change, with --json only.
-int show_change(const PlanChoice& choice);
+/// Prints the plan after a change, with --json only; otherwise whether nothing had to be changed.
+int show_change(const PlanChoice& choice, bool is_changed = true);
 
 }  // namespace tactus::command

@@ -52,7 +52,7 @@ int settle(const SettleChoice& choice) {
         const std::string reason =
             analysis::why_not_placed(plan, matching, now, found, fit::Arrangement::none, analysis::MatchWay::near);
         const bool fits = found.match.verdict == fit::FitVerdict::fit;
-        if (fits) analysis::do_step(plan, analysis::step_of(plan, found.match, "settle"), choice.plan);
+        if (fits) analysis::change_plan(plan, analysis::settling(found.match), {.by = "settle"}, choice.plan);
         all_fit = all_fit && fits;
         rows.push_back(match_json<file::Json>(plan, found, reason));
         if (!choice.json) print_match(plan, found, reason);

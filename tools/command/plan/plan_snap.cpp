@@ -45,10 +45,10 @@ int snap_fragment(const SnapChoice& choice) {
     // Where nothing fits, the distance there says nothing.
     const bool is_uncertain = found.match.verdict == fit::FitVerdict::uncertain;
     const bool has_place = fits || is_uncertain || found.as_scanned;
-    if (fits) analysis::do_step(plan, analysis::step_of(plan, found.match, "snap"), choice.plan);
+    if (fits) analysis::change_plan(plan, analysis::settling(found.match), {.by = "snap"}, choice.plan);
     // A place that no fit vouches for connects nothing: the step has no fit in it, and 'plan accept' adds the decision.
     if (is_uncertain && choice.takes_uncertain)
-        analysis::do_step(plan, plan::placing(plan, moving, found.match.pose, "snap"), choice.plan);
+        analysis::change_plan(plan, plan::PlaceFragment{moving, found.match.pose}, {.by = "snap"}, choice.plan);
     if (choice.json) {
         using file::Json;
         Json json = match_json<Json>(plan, found, reason);

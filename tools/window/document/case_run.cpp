@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/document/case_run.hpp"
 
+#include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/arrangement/history.hpp"
+#include "tools/counted.hpp"
 #include "tools/window/document/hand_of_patch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <exception>
 #include <utility>
 
@@ -239,7 +242,7 @@ void CaseRun::change_document(const plan::PlanCommand& command) {
     try {
         // Kept from command to command: it can bring dropped alternatives back.
         if (!changed_ || changed_of_ != document_->newest()) changed_.emplace(document_->plan());
-        const Outcome outcome = changed_->apply(command, "command");
+        const Outcome outcome = changed_->apply(command, {.time = plan::time_of_day()});
         if (outcome != Outcome::done) return bench_.tell(std::string(plan::text_of(outcome)), true);
         document_->adopt(std::make_shared<const plan::CasePlan>(changed_->plan()));
         changed_of_ = document_->newest();
@@ -253,12 +256,20 @@ void CaseRun::give(const plan::PlanCommand& command) {
     else if (is_live()) commands_.add(command);
 }
 
-void CaseRun::toggle_lock(int fragment) {
-    if (plan_) give(plan::LockFragment{fragment, !plan::state_of(*plan_).arrangement.is_locked(fragment)});
+void CaseRun::toggle_lock(const std::vector<int>& fragments) {
+    if (!plan_) return;
+    const fit::Arrangement now = plan::state_of(*plan_).arrangement;
+    const bool are_locked = std::ranges::all_of(fragments, [&](int n) { return now.is_locked(n); });
+    give(plan::LockFragments{plan::set_of(fragments), !are_locked});
 }
 
-void CaseRun::join(const std::vector<int>& fragments) {
-    for (std::size_t i = 1; i < fragments.size(); ++i) give(plan::JoinFragments{fragments.front(), fragments[i]});
+void CaseRun::show_hidden() {
+    if (!plan_) return;
+    const fit::Arrangement now = plan::state_of(*plan_).arrangement;
+    plan::FragmentSet hidden;
+    for (int n = 0; n < static_cast<int>(now.size()); ++n) hidden[static_cast<std::size_t>(n)] = now.is_hidden(n);
+    if (hidden.none()) return bench_.tell("the plan hides no fragment", true);
+    give(plan::HideFragments{hidden, false});
 }
 
 bool CaseRun::is_live() const { return is_there() && bench_.status()->state != RunStatus::State::over; }

@@ -66,10 +66,10 @@ public:
     void give(const plan::PlanCommand& command);
     /// There is a plan that commands change.
     bool can_give() const { return is_live() || changes_document(); }
-    /// Locks a fragment, or unlocks it.
-    void toggle_lock(int fragment);
-    /// Puts fragments into one group, one after another.
-    void join(const std::vector<int>& fragments);
+    /// Locks fragments, or unlocks them if all are locked.
+    void toggle_lock(const std::vector<int>& fragments);
+    /// Shows all fragments that the plan hides.
+    void show_hidden();
     /// The fragment that a hand holds in the run, or has held last; -1: none.
     int held_last() const { return held_last_; }
     /// The patch runs.

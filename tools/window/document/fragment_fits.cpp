@@ -40,12 +40,7 @@ FitCandidate candidate_of(const plan::CasePlan& plan, const analysis::PlanMatchi
     const fit::FitQuality& q = match.quality;
     FitCandidate made;
     made.verdict = match.verdict;
-    // Only a fit connects: at any other place the step names no partner.
-    made.step = {match.moving,
-                 made.fits() ? match.partner : fit::Arrangement::none,
-                 match.pose,
-                 {q.score, match.margin, q.rms, q.gap, q.penetration, q.overlap},
-                 plan::FitBasis::fracture};
+    made.step = analysis::settling(match);
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     made.words = fmt::format("{} to {}: {}, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.2f} mm rms",
                              name(match.moving), name(match.partner), fit::name_of(match.verdict), q.score,

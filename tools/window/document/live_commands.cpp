@@ -4,35 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace tactus::window {
 
 namespace {
 
-// In the order of PlanCommandNumbers. The kind comes first: a node that an edit of the patch replaces while a command is
-// on its way has none, and does nothing.
-struct PortNumber {
-    const char *name, *unit;
-};
-constexpr std::array<PortNumber, plan::plan_command_numbers> port{{{"command", ""},
-                                                                   {"command_first", ""},
-                                                                   {"command_second", ""},
-                                                                   {"command_switch", ""},
-                                                                   {"command_x", " m"},
-                                                                   {"command_y", " m"},
-                                                                   {"command_z", " m"},
-                                                                   {"command_qw", ""},
-                                                                   {"command_qx", ""},
-                                                                   {"command_qy", ""},
-                                                                   {"command_qz", ""},
-                                                                   {"command_score", ""},
-                                                                   {"command_margin", ""},
-                                                                   {"command_rms", " m"},
-                                                                   {"command_gap", " m"},
-                                                                   {"command_penetration", " m"},
-                                                                   {"command_overlap", " m^2"}}};
 // A command that the run has not confirmed after this time was lost with a node that was replaced. It is sent again under
 // its number, and done at most once.
 constexpr double again_after_s = 1.0;
@@ -57,8 +34,12 @@ void LiveCommands::tell_pause() {
 
 void LiveCommands::send(const std::string& node) {
     const plan::PlanCommandNumbers numbers = plan::numbers_of(waiting_.front());
-    for (std::size_t n = 0; n < numbers.size(); ++n)
-        bench_.turn(node, port[n].name, fmt::format("{:.17g}{}", numbers[n], port[n].unit));
+    // The kind comes first: a node that an edit of the patch replaces while a command is on its way has none, and does
+    // nothing.
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+        const plan::PlanCommandNumber& port = plan::plan_command_port[n];
+        bench_.turn(node, std::string(port.name), fmt::format("{:.17g}{}", numbers[n], port.unit));
+    }
     bench_.turn(node, "command_number", fmt::format("{}", number_));
     sent_s_ = bench_.status()->time;
 }

@@ -10,22 +10,22 @@ std::vector<int> PlanPanel::meant() const {
     return chosen;
 }
 
-void PlanPanel::on_meant(const std::function<void(int)>& what) {
+void PlanPanel::on_meant(const std::function<void(const std::vector<int>&)>& what) {
     const std::vector<int> all = meant();
-    if (all.empty()) bench_.tell("choose a fragment first, in the scene or in its list", true);
-    for (const int place : all) what(place);
+    if (all.empty()) return bench_.tell("choose a fragment first, in the scene or in its list", true);
+    what(all);
 }
 
 void PlanPanel::split() {
-    on_meant([this](int place) { case_.give(plan::SplitFragment{place}); });
+    on_meant([this](const std::vector<int>& all) { case_.give(plan::SplitFragments{plan::set_of(all)}); });
 }
 
 void PlanPanel::lock() {
-    on_meant([this](int place) { case_.toggle_lock(place); });
+    on_meant([this](const std::vector<int>& all) { case_.toggle_lock(all); });
 }
 
 void PlanPanel::hide() {
-    on_meant([this](int place) { case_.give(plan::HideFragment{place}); });
+    on_meant([this](const std::vector<int>& all) { case_.give(plan::HideFragments{plan::set_of(all)}); });
 }
 
 /// The chosen fragments, or the one held last and the partner of its fit.
@@ -33,7 +33,7 @@ void PlanPanel::group() {
     std::vector<int> all = scene_.chosen_places();
     if (const auto fit = case_.fit(); all.empty() && fit && fit->partner >= 0 && fit->fragment >= 0)
         all = {fit->fragment, fit->partner};
-    if (all.size() > 1) return case_.join(all);
+    if (all.size() > 1) return case_.give(plan::JoinFragments{plan::set_of(all)});
     bench_.tell("choose two fragments or more, by the list of the scene or by 'Choose' in the list of commands", true);
 }
 
@@ -63,7 +63,7 @@ void PlanPanel::add_commands(std::vector<Command>& all) {
     add("Split the chosen fragments", "group apart", can, [this] { split(); });
     add("Lock or unlock the chosen fragments", "fix", can, [this] { lock(); });
     add("Hide the chosen fragments in the plan", "remove", can, [this] { hide(); });
-    add("Show the fragments that the plan hides", "all", can, [this] { case_.give(plan::ShowFragments{}); });
+    add("Show the fragments that the plan hides", "all", can, [this] { case_.show_hidden(); });
     add("Undo a step of the plan", "back", can, [this] { case_.give(plan::UndoStep{}); });
     add("Redo a step of the plan", "again", can, [this] { case_.give(plan::RedoStep{}); });
     add(

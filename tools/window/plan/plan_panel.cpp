@@ -75,7 +75,7 @@ void PlanPanel::fragment_buttons() {
     if (plan_button("split", can, "the chosen fragments, or the one held last, leave their groups")) split();
     if (plan_button("lock", can, "lock or unlock the chosen fragments, or the one held last")) lock();
     if (plan_button("hide in plan", can, "out of pictures and fits: a step of the plan")) hide();
-    if (plan_button("show hidden", can, "all that the plan hides")) case_.give(plan::ShowFragments{});
+    if (plan_button("show hidden", can, "all that the plan hides")) case_.show_hidden();
 }
 
 void PlanPanel::studies() {

@@ -62,7 +62,7 @@ public:
 private:
     /// The fragments that a command means: the chosen ones, or the one that a hand holds or has held last.
     std::vector<int> meant() const;
-    void on_meant(const std::function<void(int)>& what);
+    void on_meant(const std::function<void(const std::vector<int>&)>& what);
     void group();
     void split();
     void lock();

@@ -91,17 +91,11 @@ void PlanPanel::accept() {
                    [plan = placing_of_, fragment = scene_.chosen_places().front()](std::stop_token stop) -> Placing {
                        const StopScope scope(std::move(stop));
                        const analysis::Acceptance found =
-                           analysis::measure_acceptance(*plan, {}, fragment, analysis::AcceptedBy::hand);
-                       const Pose pose = plan::state_of(*plan).arrangement.pose(fragment);
-                       return {
-                           plan::SettleFragment{fragment,
-                                                plan::find_fragment(*plan, found.partner),
-                                                pose,
-                                                {0.0, 0.0, found.residual, found.gap, found.penetration, found.facing},
-                                                plan::FitBasis::hand},
-                           fmt::format("{}: accepted beside {}, residual {:.2f} mm",
-                                       plan->fragments[static_cast<std::size_t>(fragment)].name, found.partner,
-                                       found.residual * 1e3)};
+                           analysis::measure_acceptance(*plan, {}, fragment, plan::FitBasis::hand);
+                       return {analysis::accepting(*plan, fragment, plan::FitBasis::hand, found),
+                               fmt::format("{}: accepted beside {}, residual {:.2f} mm",
+                                           plan->fragments[static_cast<std::size_t>(fragment)].name, found.partner,
+                                           found.residual * 1e3)};
                    });
 }
 

@@ -49,7 +49,7 @@ TEST_CASE("a change of a reconstruction keeps the steps that the run made while 
         widen(all);
     });
     REQUIRE(rig.comes([&] { return has_begun.load(); }));
-    rig.run.toggle_lock(segment);
+    rig.run.toggle_lock({segment});
     const bool is_locked = rig.comes([&] { return rig.is_locked(segment); });
     may_end = true;
     REQUIRE(is_locked);
@@ -59,7 +59,7 @@ TEST_CASE("a change of a reconstruction keeps the steps that the run made while 
 
 TEST_CASE("a change of a reconstruction keeps the step that was asked for just before", "[virtual][slow]") {
     FlapRig rig;
-    rig.run.toggle_lock(segment);
+    rig.run.toggle_lock({segment});
     rig.flap.change(widen);
     REQUIRE(rig.is_made(6000));
     rig.check_made();
@@ -68,7 +68,7 @@ TEST_CASE("a change of a reconstruction keeps the step that was asked for just b
 TEST_CASE("a change of a reconstruction waits for the end of a pause with the steps that wait", "[virtual][slow]") {
     FlapRig rig;
     REQUIRE(rig.pause(true));
-    rig.run.toggle_lock(segment);
+    rig.run.toggle_lock({segment});
     rig.flap.change(widen);
     CHECK(rig.has_told("the run is paused: the change comes when it goes on"));
     CHECK_FALSE(rig.is_made(200));
@@ -103,7 +103,7 @@ TEST_CASE("undo of a change of the reconstruction reaches the nodes that have re
 TEST_CASE("a change with which the patch cannot run is told and the run goes on without it", "[virtual][slow]") {
     FlapRig rig;
     const std::size_t sites = rig.flap.reconstruction()->flap.sites.size();
-    rig.run.toggle_lock(segment);
+    rig.run.toggle_lock({segment});
     REQUIRE(rig.comes([&] { return rig.is_locked(segment); }));
     rig.flap.change([](reconstruction::Reconstruction& all) { all.flap.sites.clear(); });
     REQUIRE(rig.is_made(6000));

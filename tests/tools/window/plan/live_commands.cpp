@@ -18,8 +18,8 @@ TEST_CASE("commands that are given in a pause all take effect when the run goes 
     PlanRig rig("planning-trauma");
     const std::size_t before = rig.run.steps().size();
     REQUIRE(rig.pause(true));
-    rig.run.toggle_lock(3);
-    rig.run.toggle_lock(5);
+    rig.run.toggle_lock({3});
+    rig.run.toggle_lock({5});
     rig.pictures(60);
     CHECK(rig.has_told("the run is paused: the change comes when it goes on"));
     REQUIRE(rig.pause(false));
@@ -46,7 +46,7 @@ TEST_CASE("a run whose time goes slowly does each of several steps", "[virtual][
 
 TEST_CASE("an edit of the patch does not drop the commands that wait", "[virtual][slow]") {
     PlanRig rig("planning-trauma");
-    for (const int fragment : {2, 3, 5}) rig.run.toggle_lock(fragment);
+    for (const int fragment : {2, 3, 5}) rig.run.toggle_lock({fragment});
     rig.picture();
     REQUIRE(rig.bench.set("case", "loose", "9 mm"));
     CHECK(rig.comes([&] { return rig.is_locked(2) && rig.is_locked(3) && rig.is_locked(5); }, 600));
@@ -55,7 +55,7 @@ TEST_CASE("an edit of the patch does not drop the commands that wait", "[virtual
 TEST_CASE("a button that is pressed elsewhere after a command does not mean the fragment of that command",
           "[virtual][slow]") {
     PlanRig rig("planning-trauma");
-    rig.run.toggle_lock(3);
+    rig.run.toggle_lock({3});
     REQUIRE(rig.comes([&] { return rig.is_locked(3) && rig.run.is_settled(); }, 600));
     rig.bench.press("lock");
     rig.pictures(150);
@@ -108,7 +108,7 @@ TEST_CASE("the commands of a window are in the take, and its replay repeats them
     REQUIRE(rig.comes([&] { return rig.bench.is_recording(); }, 1000));
     const std::size_t before = rig.run.plan()->steps.size();
     rig.run.give(plan::PlaceFragment{4, {Vec3(0.01, 0.02, 0.123456789), rotation_by({0.1, 0.2, 0.3})}});
-    rig.run.give(plan::JoinFragments{4, 5});
+    rig.run.give(plan::JoinFragments{plan::set_of({4, 5})});
     rig.run.give(plan::UndoStep{});
     REQUIRE(rig.comes([&] { return rig.run.plan()->steps.size() == before + 2 && !rig.run.is_asked(); }, 1000));
     rig.bench.stop();

@@ -33,7 +33,7 @@ struct Rig : PlanRig {
 
 TEST_CASE("another name for an alternative keeps the step that was asked for just before", "[virtual][slow]") {
     Rig rig;
-    rig.run.toggle_lock(fragment);
+    rig.run.toggle_lock({fragment});
     rig.alternatives.rename("main", "before");
     REQUIRE(rig.is_made(6000));
     const plan::CasePlan plan = plan::load_case_plan(rig.made);
@@ -45,7 +45,7 @@ TEST_CASE("another name for an alternative keeps the step that was asked for jus
 TEST_CASE("another name that is given in a pause waits for the steps that were asked for before", "[virtual][slow]") {
     Rig rig;
     REQUIRE(rig.pause(true));
-    rig.run.toggle_lock(fragment);
+    rig.run.toggle_lock({fragment});
     rig.alternatives.rename("main", "before");
     CHECK(rig.has_told("the run is paused: the change comes when it goes on"));
     CHECK_FALSE(rig.is_made(200));
@@ -56,7 +56,7 @@ TEST_CASE("another name that is given in a pause waits for the steps that were a
 
 TEST_CASE("a run that is ended after another name was given does not begin again with it", "[virtual][slow]") {
     Rig rig;
-    rig.run.toggle_lock(fragment);
+    rig.run.toggle_lock({fragment});
     rig.alternatives.rename("main", "before");
     rig.bench.stop();
     REQUIRE(rig.comes([&] { return rig.bench.status()->state == RunStatus::State::over; }, 1000));
