@@ -82,7 +82,7 @@ private:
 };
 
 Worker& worker_of(Lane lane) {
-    static std::array<Worker, 2> workers;
+    static std::array<Worker, lane_count> workers;
     return workers[static_cast<std::size_t>(lane)];
 }
 
@@ -93,7 +93,7 @@ void do_beside(Lane lane, std::function<void()> job) { worker_of(lane).add(std::
 std::size_t jobs_waiting(Lane lane) { return worker_of(lane).waiting(); }
 
 void end_beside() {
-    for (const Lane lane : {Lane::scene, Lane::studies}) worker_of(lane).end();
+    for (std::size_t lane = 0; lane < lane_count; ++lane) worker_of(static_cast<Lane>(lane)).end();
 }
 
 }  // namespace tactus::analysis

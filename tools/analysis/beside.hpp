@@ -18,12 +18,14 @@ namespace tactus::analysis {
 /// Gives this thread, and those that it creates from now on, the priority of background work.
 void let_others_go_first() noexcept;
 
-/// Each lane has one thread of low priority that executes one job after another. So a mesh of the scene does not wait
-/// for a study of a plan, and many bones do not take processor time from the forces.
+/// Each lane has one thread of low priority that executes one job after another. So neither a mesh of the scene nor a
+/// dragged fragment waits for a study of a plan, and many bones do not take processor time from the forces.
 enum class Lane : std::uint8_t {
     scene,  ///< meshes and sections: at most a second
     studies,  ///< of a plan or a scan: many seconds
+    moves,  ///< what moves a fragment of a plan: its bodies and fits, for which a hand waits
 };
+inline constexpr std::size_t lane_count = 3;
 
 /// Queues `job` after the earlier jobs of the lane. It must not throw.
 void do_beside(Lane lane, std::function<void()> job);

@@ -73,7 +73,7 @@ analysis::PlanMatching& FragmentFits::Shared::of(const plan::CasePlan& plan) {
 
 void FragmentFits::search(const std::shared_ptr<const plan::CasePlan>& plan, int fragment) {
     shared_->progress = 0.0;
-    searching_.begin(analysis::Lane::studies, [shared = shared_, plan, fragment](std::stop_token stop) {
+    searching_.begin(analysis::Lane::moves, [shared = shared_, plan, fragment](std::stop_token stop) {
         const StopScope scope(stop);
         Found found{fragment, plan, {}, {}};
         analysis::PlanMatching& matching = shared->of(*plan);
@@ -124,7 +124,7 @@ std::optional<FragmentFits::Found> FragmentFits::take() {
 void FragmentFits::look_near(const std::shared_ptr<const plan::CasePlan>& plan, const fit::Arrangement& now,
                              int fragment) {
     if (looking_.is_busy()) return;
-    looking_.begin(analysis::Lane::studies, [shared = shared_, plan, now, fragment](std::stop_token stop) {
+    looking_.begin(analysis::Lane::moves, [shared = shared_, plan, now, fragment](std::stop_token stop) {
         const StopScope scope(std::move(stop));
         analysis::PlanMatching& matching = shared->of(*plan);
         const analysis::PlanMatch found = matching.near(now, fragment, analysis::Partners::standing_first);

@@ -26,8 +26,13 @@ public:
     /// A fragment may be dragged soon: its plan must be loaded, also in a run.
     bool needs_bodies() const { return needs_bodies_; }
 
-    /// Begins to drag a fragment. False: it cannot be moved now; `why` says so if it is not null.
-    bool take(int fragment, std::string* why = nullptr);
+    enum class Taken : std::uint8_t {
+        yes,
+        not_yet,  ///< the bones are still being loaded, or the step before is on its way to the plan: ask again
+        no,
+    };
+    /// Begins to drag a fragment, from where it is shown. `why`: the reason if it is not taken.
+    Taken take(int fragment, std::string* why = nullptr);
     bool is_dragging() const { return drag_.has_value(); }
     const FragmentDrag* drag() const { return drag_ ? &*drag_ : nullptr; }
     /// The fit that attracts the dragged fragment; null: none.
@@ -41,8 +46,11 @@ public:
     /// Puts it back to where it was taken.
     void cancel();
 
-    /// Shows a fragment, and what moves with it, at another place; no step.
-    void show_at(int fragment, const Pose& pose);
+    /// Offers another place: shows a fragment, and what moves with it, there; no step. Dragging it on from there ends the
+    /// offer.
+    void offer(int fragment, const Pose& pose);
+    bool offers() const { return offered_.has_value(); }
+    /// Ends an offer.
     void show_plan();
     /// Poses of the fragments' files that the scene shows in place of the plan's, by place; empty: none.
     const std::vector<std::optional<Pose>>& poses() const { return poses_; }
@@ -53,6 +61,8 @@ private:
     using Clock = std::chrono::steady_clock;
     /// Overrides the poses of the fragment and of what moves with it.
     void show(const fit::Arrangement& now, int fragment);
+    void show_at(int fragment, const Pose& pose);
+    bool is_step_on_its_way() const;
     void attract();
 
     Workbench& bench_;
@@ -63,6 +73,7 @@ private:
     std::optional<FragmentDrag> drag_;
     std::optional<FitCandidate> fit_;
     std::vector<std::optional<Pose>> poses_;
+    std::optional<plan::PlaceFragment> offered_;
     std::int64_t version_ = 0;
     std::optional<std::int64_t> left_at_;  // version of the plan: the step is on its way to it
     Clock::time_point left_{};

@@ -48,7 +48,7 @@ void PlanPreview::begin(const plan::CasePlan& plan) {
         return;
     }
     // Not the lane of the scene: the meshes of bones that are loaded do not wait for the others.
-    loading_.begin(analysis::Lane::studies, [into = coming_, plan](std::stop_token stop) {
+    loading_.begin(analysis::Lane::moves, [into = coming_, plan](std::stop_token stop) {
         const StopScope scope(std::move(stop));
         try {
             plan::check_files(plan, {});

@@ -101,7 +101,7 @@ private:
         std::string words;
     };
     analysis::Beside<Placing> placing_;
-    std::shared_ptr<const plan::CasePlan> placing_of_;  ///< the plan as it was then
+    std::shared_ptr<const plan::CasePlan> placing_of_;  ///< the plan as it was then, also for `fits_`
     std::int64_t state_version_ = -1;  ///< of the plan that the next two are of
     bool has_mirror_ = false;
     std::optional<fit::Arrangement> arrangement_;

@@ -60,14 +60,15 @@ void PlanPanel::put_back() {
 
 void PlanPanel::snap() {
     end_candidates();
-    fits_.search(case_.newest(), scene_.chosen_places().front());
+    placing_of_ = case_.newest();
+    fits_.search(placing_of_, scene_.chosen_places().front());
 }
 
 void PlanPanel::put_on_mirror() {
     end_candidates();
     placing_of_ = case_.newest();
     placing_.begin(
-        analysis::Lane::studies,
+        analysis::Lane::moves,
         [plan = placing_of_, fragment = scene_.chosen_places().front()](std::stop_token stop) -> Placing {
             const StopScope scope(std::move(stop));
             const plan::PlanState state = plan::state_of(*plan);
@@ -87,7 +88,7 @@ void PlanPanel::put_on_mirror() {
 void PlanPanel::accept() {
     end_candidates();
     placing_of_ = case_.newest();
-    placing_.begin(analysis::Lane::studies,
+    placing_.begin(analysis::Lane::moves,
                    [plan = placing_of_, fragment = scene_.chosen_places().front()](std::stop_token stop) -> Placing {
                        const StopScope scope(std::move(stop));
                        const analysis::Acceptance found =
@@ -103,16 +104,24 @@ void PlanPanel::accept() {
 void PlanPanel::tend_placing() {
     // A list that was made for another state of the plan means nothing any more.
     if (found_ && found_->plan != case_.newest()) end_candidates();
+    // The fragment was dragged on from the place that was offered.
+    if (found_ && !mover_.offers()) {
+        found_.reset();
+        placed_.clear();
+    }
     try {
+        if ((placing_.is_busy() || fits_.is_searching()) && placing_of_ != case_.newest()) {
+            placing_.let_go();
+            fits_.cancel();
+            throw Error("the plan was changed meanwhile; ask again");
+        }
         if (placing_.is_ready()) {
             Placing made = placing_.take();
-            if (placing_of_ != case_.newest()) throw Error("the plan was changed meanwhile; ask again");
             case_.give(made.command);
             placed_ = std::move(made.words);
         }
         auto found = fits_.take();
         if (!found) return;
-        if (found->plan != case_.newest()) throw Error("the plan was changed meanwhile; ask again");
         if (found->candidates.empty()) {
             placed_ =
                 fmt::format("{} stays where it is: {}",
@@ -135,7 +144,7 @@ void PlanPanel::tend_placing() {
     }
 }
 
-void PlanPanel::show_candidate() { mover_.show_at(found_->fragment, found_->candidates[candidate_].step.pose); }
+void PlanPanel::show_candidate() { mover_.offer(found_->fragment, found_->candidates[candidate_].step.pose); }
 
 void PlanPanel::end_candidates() {
     if (std::exchange(found_, std::nullopt)) mover_.show_plan();

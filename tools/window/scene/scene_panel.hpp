@@ -116,7 +116,8 @@ private:
     void steer_by_keys(bool is_pointed_at);
     /// Drags a chosen fragment. True: the mouse is the fragment's.
     bool steer_fragment(Point corner, int height);
-    void take_fragment(Point corner);
+    void press_fragment(Point corner);
+    void take_fragment();
     void drag_fragment(int height);
     void follow_mover();
     void draw_handles(const Painter& paint, Point corner, double pixel);
@@ -173,9 +174,11 @@ private:
     };
     std::vector<Handle> handles_;  ///< as they were drawn last
     Point handles_at_;
-    Grip grip_ = Grip::none;  ///< of the fragment that is dragged
-    int grip_axis_ = 0;
-    Vec3 grip_at_{0.0};
+    Grip grip_ = Grip::none;  ///< of the fragment that is pressed
+    int grip_axis_ = 0, gripped_ = -1;
+    std::optional<Vec3> grip_at_;  ///< none: the middle of the fragment
+    enum class Hold { pressed, drags, ended } hold_ = Hold::pressed;
+    std::string waits_for_;  ///< why a pressed fragment does not follow the pointer yet
     Point dragged_;  ///< since the press, pixels: what the fragment has followed
     enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports

@@ -67,23 +67,27 @@ void ScenePanel::follow_mover() {
 bool ScenePanel::steer_fragment(Point corner, int height) {
     if (!mover_) return false;
     if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !is_measuring && !is_siting)
-        take_fragment(corner);
+        press_fragment(corner);
     if (grip_ == Grip::none) return false;
-    if (!mover_->is_dragging() || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
-        mover_->cancel();
-        grip_ = Grip::none;
-        return true;
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+        if (hold_ == Hold::drags) mover_->cancel();
+        hold_ = Hold::ended;
     }
-    drag_fragment(height);
+    if (hold_ == Hold::pressed) take_fragment();
+    if (hold_ == Hold::drags && !mover_->is_dragging()) hold_ = Hold::ended;
+    if (hold_ == Hold::drags) drag_fragment(height);
     if (!ImGui::IsItemActive()) {
-        mover_->release();
+        if (hold_ == Hold::drags) mover_->release();
+        else if (hold_ == Hold::pressed && !waits_for_.empty())
+            bench_.tell(fmt::format("not moved: {}", waits_for_), true);
         grip_ = Grip::none;
+        waits_for_.clear();
     }
     return true;
 }
 
 /// Only a chosen fragment is taken: a drag elsewhere turns the view.
-void ScenePanel::take_fragment(Point corner) {
+void ScenePanel::press_fragment(Point corner) {
     const std::vector<int> chosen = chosen_places();
     if (chosen.empty()) return;
     const Point mouse = point(ImGui::GetIO().MousePos);
@@ -101,22 +105,42 @@ void ScenePanel::take_fragment(Point corner) {
             if (part.name == name && std::ranges::find(chosen, part.place) != chosen.end()) fragment = part.place;
     }
     if (fragment < 0) return;
-    std::string why;
-    if (!mover_->take(fragment, &why)) return bench_.tell(fmt::format("not moved: {}", why), true);
     grip_ = nearest ? nearest->grip : Grip::plane;
     grip_axis_ = nearest ? nearest->axis : 0;
-    grip_at_ = picked ? picked->position : mover_->drag()->middle();
+    gripped_ = fragment;
+    grip_at_.reset();
+    if (picked) grip_at_ = picked->position;
+    hold_ = Hold::pressed;
     dragged_ = {};
+}
+
+/// Takes the pressed fragment, now or as soon as it can be: it then goes to where the pointer is by then.
+void ScenePanel::take_fragment() {
+    // Until the pointer has left the place of the press, it is a click.
+    const ImVec2 total = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, drag_begins_px);
+    if (total.x == 0.0f && total.y == 0.0f && ImGui::GetIO().MouseWheel == 0.0f) return;
+    std::string why;
+    switch (mover_->take(gripped_, &why)) {
+        case FragmentMover::Taken::yes:
+            hold_ = Hold::drags;
+            if (!grip_at_) grip_at_ = mover_->drag()->middle();
+            waits_for_.clear();
+            break;
+        case FragmentMover::Taken::not_yet: waits_for_ = std::move(why); break;
+        case FragmentMover::Taken::no:
+            hold_ = Hold::ended;
+            bench_.tell(fmt::format("not moved: {}", why), true);
+            break;
+    }
 }
 
 void ScenePanel::drag_fragment(int height) {
     const ImGuiIO& io = ImGui::GetIO();
-    // Until the pointer has left the place of the press, it is a click.
     const Point total = point(ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, drag_begins_px));
     const Point by = total - std::exchange(dragged_, total);
     const Vec3 right = camera.orientation * Vec3(1.0, 0.0, 0.0), up = camera.orientation * Vec3(0.0, 1.0, 0.0),
                forward = camera.orientation * Vec3(0.0, 0.0, -1.0);
-    const double per_pixel = size_of_pixel(camera, grip_at_, height);
+    const double per_pixel = size_of_pixel(camera, *grip_at_, height);
     mover_->let_attract(!io.KeyAlt);
     if (io.MouseWheel != 0.0f) mover_->move(forward * (static_cast<double>(io.MouseWheel) * 1e-3));
     if (by.x == 0.0 && by.y == 0.0) return;
@@ -184,14 +208,18 @@ void ScenePanel::draw_handles(const Painter& paint, Point corner, double pixel) 
             [&](int n) { return middle + size * (n == 0 ? ring_px : handle_px) * along(axis); }, 1);
     }
     paint.list()->PopClipRect();
-    if (!mover_->is_dragging()) return;
     const FitCandidate* const fit = mover_->attraction();
-    const std::string text = fit ? fmt::format("snaps: {}", fit->words) : mover_->drag()->touches() ? "touches" : "";
+    const std::string text = fit                                                  ? fmt::format("snaps: {}", fit->words)
+                             : mover_->is_dragging() && mover_->drag()->touches() ? "touches"
+                                                                                  : waits_for_;
     if (text.empty()) return;
     const double letters = 0.85 * static_cast<double>(ImGui::GetFontSize());
     const Point place{corner.x + 10.0, corner.y + 8.0};
     paint.text(place, letters, fit ? tone::good : tone::text, text);
-    set_spot(fit ? "drag snaps" : "drag touches", {place.x, place.y, place.x + 1.0, place.y + letters});
+    set_spot(fit                  ? "drag snaps"
+             : waits_for_.empty() ? "drag touches"
+                                  : "drag waits",
+             {place.x, place.y, place.x + 1.0, place.y + letters});
 }
 
 }  // namespace tactus::window
