@@ -163,6 +163,7 @@ void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
         held_last_ = static_cast<int>(held);
     look_for_changes();
     follow_plan();
+    if (!is_live() && commands_.is_under_way()) do_what_is_left();
     if (study_.is_ready()) {
         has_numbers_ = studied_ == Study::gaps || studied_ == Study::healthy;
         try {
@@ -249,6 +250,14 @@ void CaseRun::change_document(const plan::PlanCommand& command) {
     } catch (const Error& error) {
         bench_.tell(error.what(), true);
     }
+}
+
+/// The run has ended before it did all that it was asked for, as in a pause.
+void CaseRun::do_what_is_left() {
+    const std::deque<plan::PlanCommand> left = commands_.take_left();
+    if (document_)
+        for (const plan::PlanCommand& command : left) change_document(command);
+    else bench_.tell(fmt::format("{} not done: the run has ended", counted(left.size(), "step")), true);
 }
 
 void CaseRun::give(const plan::PlanCommand& command) {

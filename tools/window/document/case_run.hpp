@@ -115,6 +115,7 @@ private:
     void look_for_changes();
     void follow_plan();
     void change_document(const plan::PlanCommand& command);
+    void do_what_is_left();
     double number(const std::string& port, double otherwise) const;
     bool flag(const std::string& port) const;
 

@@ -22,6 +22,12 @@ void LiveCommands::clear() {
     number_ = 0;
 }
 
+std::deque<plan::PlanCommand> LiveCommands::take_left() {
+    std::deque<plan::PlanCommand> left = std::exchange(waiting_, {});
+    clear();
+    return left;
+}
+
 bool LiveCommands::is_paused() const {
     const RunStatus::State state = bench_.status()->state;
     return state == RunStatus::State::fades || state == RunStatus::State::stands;
@@ -46,11 +52,11 @@ void LiveCommands::send(const std::string& node) {
 
 void LiveCommands::tend(const std::string& node, std::int64_t received) {
     const std::shared_ptr<const RunStatus> status = bench_.status();
-    if (status->state == RunStatus::State::over) return clear();
     if (is_sent_ && received >= number_) {
         waiting_.pop_front();
         is_sent_ = false;
     }
+    if (status->state == RunStatus::State::over) return;
     if (!is_paused()) has_told_ = false;
     else if (!waiting_.empty()) tell_pause();
     if (waiting_.empty() || status->state != RunStatus::State::runs) return;

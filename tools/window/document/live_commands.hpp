@@ -19,6 +19,8 @@ public:
 
     void add(const plan::PlanCommand& command) { waiting_.push_back(command); }
     void clear();
+    /// What a run has not done that is over.
+    std::deque<plan::PlanCommand> take_left();
     /// Once per picture: sends what may be sent. In a pause commands wait, and the messages say so. `node`: of the plan;
     /// `received`: its output, the number of the last command that it has done or refused.
     void tend(const std::string& node, std::int64_t received);

@@ -36,10 +36,28 @@ TEST_CASE("commands that are given in a pause all take effect when the run goes 
     CHECK(rig.comes([&] { return !rig.is_locked(3) && !rig.is_locked(5); }, 600));
 }
 
+TEST_CASE("steps that a run was asked for in a pause are in the opened plan when the run is ended", "[virtual][slow]") {
+    PlanRig rig("planning-trauma");
+    PlanDocument document(rig.run.newest(), rig.folder.path / "opened.plan.json");
+    REQUIRE(rig.pause(true));
+    rig.run.toggle_lock({3});
+    rig.pictures(60);
+    SECTION("with an opened plan") {
+        rig.run.use(&document);
+        rig.bench.stop();
+        CHECK(rig.comes([&] { return rig.run.plan() == &document.plan() && rig.is_locked(3); }, 1000));
+    }
+    SECTION("without one it is told") {
+        rig.bench.stop();
+        CHECK(rig.comes([&] { return rig.has_told("1 step not done: the run has ended"); }, 1000));
+    }
+    CHECK_FALSE(rig.run.is_asked());
+}
+
 TEST_CASE("a run whose time goes slowly does each of several steps", "[virtual][slow]") {
     PlanRig rig("planning-trauma", 20.0);
-    rig.run.toggle_lock(3);
-    rig.run.toggle_lock(5);
+    rig.run.toggle_lock({3});
+    rig.run.toggle_lock({5});
     CHECK(rig.comes([&] { return rig.is_locked(5); }, 2000));
     CHECK(rig.is_locked(3));
 }
