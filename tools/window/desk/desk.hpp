@@ -128,6 +128,7 @@ private:
     EditButtons edit_buttons();
     void save();
     bool save_plan();
+    void tell_saved(const plan::MergedAlternatives& changed);
     void ask_save_plan_as();
     void ask_save_as();
     void ask_scan();

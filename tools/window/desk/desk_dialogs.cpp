@@ -65,19 +65,22 @@ void Desk::save() {
     if (!plan_document_ || !bench_.editor().is_saved()) bench_.save();
 }
 
+void Desk::tell_saved(const plan::MergedAlternatives& changed) {
+    std::string text = fmt::format("saved {}", plan_document_->file().string());
+    for (const std::string& name : changed.added)
+        text += fmt::format("; another program had changed it: its steps are the alternative '{}'", name);
+    for (const std::string& name : changed.forwarded)
+        text += fmt::format("; another program had changed it: '{}' has its steps, too", name);
+    bench_.tell(std::move(text));
+}
+
 bool Desk::save_plan() {
     try {
         if (plan_document_->needs_name()) {
             wants_plan_name_ = true;
             return false;
         }
-        const plan::MergedAlternatives changed = plan_document_->save();
-        std::string text = fmt::format("saved {}", plan_document_->file().string());
-        for (const std::string& name : changed.added)
-            text += fmt::format("; another program had changed it: its steps are the alternative '{}'", name);
-        for (const std::string& name : changed.forwarded)
-            text += fmt::format("; another program had changed it: '{}' has its steps, too", name);
-        bench_.tell(std::move(text));
+        tell_saved(plan_document_->save());
         return true;
     } catch (const std::exception& error) {
         bench_.tell(fmt::format("not saved: {}", error.what()), true);
@@ -97,16 +100,17 @@ void Desk::ask_save_plan_as() {
         try {
             const plan::CasePlan* const now = plan_.case_run().plan();
             if (!now) throw Error("there is no plan to save any more");
-            if (plan_document_) plan_document_->save_as(path, replaces);
+            plan::MergedAlternatives changed;
+            if (plan_document_) changed = plan_document_->save_as(path, replaces);
             else {
                 auto made = std::make_unique<PlanDocument>(std::make_shared<const plan::CasePlan>(*now), path);
                 made->save_as(path, replaces);
                 open_plan(std::move(made));
             }
+            tell_saved(changed);
         } catch (const std::exception& error) {
             return dialog_.refuse(error.what());
         }
-        bench_.tell(fmt::format("saved {}", plan_document_->file().string()));
         questions.named(true);
         memory_.opened(opened_file());
         memory_.keep_layout(opened_file(), layout);

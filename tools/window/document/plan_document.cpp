@@ -114,12 +114,14 @@ plan::MergedAlternatives PlanDocument::save() {
     return changed;
 }
 
-void PlanDocument::save_as(const fs::path& name, bool replaces) {
+plan::MergedAlternatives PlanDocument::save_as(const fs::path& name, bool replaces) {
     const fs::path file = fs::absolute(name).lexically_normal();
     if (run::is_of_library(file))
         throw Error(fmt::format("{}: this file belongs to the library; choose another", file.string()));
     if (fs::exists(fs::symlink_status(file)) && !replaces)
         throw Error(fmt::format("{}: the file exists already; choose another name", file.string()));
+    // Steps that another program has saved there meanwhile are merged, not replaced.
+    if (std::error_code none; replaces && fs::equivalent(file, file_, none)) return save();
     const plan::PlanLock lock(file, lock_patience);
     const fs::path before = std::exchange(file_, file);
     const plan::WrittenPaths written = std::exchange(written_, {});
@@ -132,6 +134,7 @@ void PlanDocument::save_as(const fs::path& name, bool replaces) {
     }
     set_saved(*plan_);
     remove_kept();
+    return {};
 }
 
 EditedText PlanDocument::edited() const {

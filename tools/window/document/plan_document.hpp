@@ -51,9 +51,9 @@ public:
     /// first (plan_merge.hpp); returns the alternatives that this has changed. Throws Error; the file then has its old
     /// content.
     plan::MergedAlternatives save();
-    /// The same as another file, which is the document from now on. `replaces`: an existing file is overwritten. Throws
-    /// Error.
-    void save_as(const std::filesystem::path& file, bool replaces);
+    /// The same as another file, which is the document from now on. `replaces`: an existing file is overwritten, unless it
+    /// is the document's own. Throws Error.
+    plan::MergedAlternatives save_as(const std::filesystem::path& file, bool replaces);
 
     /// Once per picture: writes a new version to the recovery file, by another thread. Returns why that failed, once.
     std::string tend();

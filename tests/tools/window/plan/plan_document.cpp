@@ -81,7 +81,8 @@ TEST_CASE("steps that another program has saved meanwhile become an alternative 
     document.adopt(mine);
     plan::CasePlan theirs = plan::load_case_plan(file);
     plan::save_case_plan(*locked(theirs, 1), file);
-    CHECK(document.save().added == std::vector<std::string>{"main (2)"});
+    // Also under its own name that was given once more.
+    CHECK(document.save_as(folder.path / "./jaw.plan.json", true).added == std::vector<std::string>{"main (2)"});
     CHECK(document.take_begin_again());
     CHECK_FALSE(document.take_begin_again());
     const plan::CasePlan both = plan::load_case_plan(file);
