@@ -133,6 +133,7 @@ void Desk::tend_plan() {
         if (std::exchange(shows_unsaved_, !plan_document_->is_saved()) == plan_document_->is_saved()) show_title();
     }
     const CaseRun& run = plan_.case_run();
+    if (plan_document_) scene_.folder_of_results = run.folder_of_results();
     if (!run.is_there()) return;
     const RunStatus::State state = bench_.status()->state;
     const bool has_no_run = state == RunStatus::State::over || state == RunStatus::State::loading;

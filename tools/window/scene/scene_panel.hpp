@@ -97,6 +97,8 @@ public:
     bool is_siting = false;  ///< the next click on a bone moves the saw there
     bool has_few_tools = false;  ///< above the picture: views and the hand, as a trainee needs them
     bool wants_calibration = false;  ///< requests the calibration panel
+    /// Where measurements go; empty: to the folder of the run.
+    std::filesystem::path folder_of_results;
 
     // View settings. All throw Error and then change nothing.
     void use(const SightChoice& choice);

@@ -96,7 +96,7 @@ void ScenePanel::keep_measurement() {
 }
 
 std::filesystem::path ScenePanel::write_measurements() {
-    std::filesystem::path folder = bench_.status()->folder;
+    std::filesystem::path folder = folder_of_results.empty() ? bench_.status()->folder : folder_of_results;
     // A take is in a folder of its own.
     const std::filesystem::path beside = bench_.editor().file().parent_path();
     if (folder.empty() && std::filesystem::exists(beside / "take.json")) folder = beside;
@@ -145,7 +145,8 @@ void ScenePanel::draw_measurements() {
     if (measurements_.empty()) return;
     if (ImGui::SmallButton("save for Slicer")) save_measurements();
     mark_spot("save for Slicer");
-    if (ImGui::IsItemHovered()) show_tooltip("as .mrk.json in the folder of the run; when the window closes, too");
+    if (ImGui::IsItemHovered())
+        show_tooltip("as .mrk.json beside the opened plan, or in the folder of the run; when the window closes, too");
 }
 
 }  // namespace tactus::window
