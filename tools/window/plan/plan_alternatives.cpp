@@ -118,7 +118,11 @@ void PlanAlternatives::rename(const std::string& name, const std::string& wanted
         return bench_.tell(fmt::format("'{}' is still being renamed; try again in a moment", wanted_name_.first), true);
     if (run_.changes_document()) {
         plan::CasePlan plan = run_.document()->plan();
-        plan.alternatives[static_cast<std::size_t>(find(plan, name))].name = wanted;
+        const int place = find(plan, name);
+        if (place < 0 || find(plan, wanted) >= 0)
+            return bench_.tell(
+                fmt::format("'{}' cannot be named '{}': the alternatives are others by now", name, wanted), true);
+        plan.alternatives[static_cast<std::size_t>(place)].name = wanted;
         return run_.document()->adopt(std::make_shared<const plan::CasePlan>(std::move(plan)));
     }
     if (run_.may_begin_again()) wanted_name_ = {name, wanted};

@@ -16,7 +16,11 @@ bool plan_button(const char* label, bool can, const char* tip, bool is_first) {
     const bool pressed = ImGui::Button(label);
     ImGui::EndDisabled();
     mark_spot(label);
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) show_tooltip(tip);
+    // Where it was just pressed, its result must be seen.
+    const ImVec2 at = ImGui::GetIO().MouseClickedPos[ImGuiMouseButton_Left], low = ImGui::GetItemRectMin(),
+                 high = ImGui::GetItemRectMax();
+    const bool was_pressed_last = at.x >= low.x && at.x < high.x && at.y >= low.y && at.y < high.y;
+    if (!was_pressed_last && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) show_tooltip(tip);
     return pressed;
 }
 
