@@ -255,22 +255,35 @@ void SceneModel::show_bones() {
         if (is_new) {
             if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
             renderer_.scans().remove(bone.scan);
-            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1, {}, false, {}, {}};
+            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1, {}, 0, false, {}, {}};
         }
         const std::vector<std::uint32_t> changed = seen->changed_since(bone.update);
         bone.left.insert(changed.begin(), changed.end());
         bone.update = seen->update;
+        if (is_new) bone.bricks = bone.left.size();
         while (!bone.left.empty()) {
             const std::uint32_t brick = bone.left.extract(bone.left.begin()).value();
             mesher_.make(seen->snapshot(), brick, patch_);
             renderer_.meshes().set_part(bone.mesh, brick, patch_);
             if (!bone.is_whole) bone.bounds.add(display::bounds_of(patch_));
             ++remeshed_;
-            if (!has_time()) break;
+            // A bone that is not seen yet is more urgent than the next picture.
+            constexpr std::chrono::milliseconds for_first{40};
+            if (!has_time(bone.is_whole ? std::chrono::milliseconds() : for_first)) break;
         }
         bone.is_whole = bone.is_whole || bone.left.empty();
         is_making_ = is_making_ || !bone.is_whole;
         if (!is_part_shown(node_of(port), still_colour)) continue;
+        // Not in shreds; the view makes room for all of it.
+        if (!bone.is_whole) {
+            const volume::BrickLayout& layout = seen->layout;
+            bounds_.add(layout.origin);
+            bounds_.add(layout.origin + layout.spacing * Vec3(layout.size[0], layout.size[1], layout.size[2]));
+            const double done = 1.0 - static_cast<double>(bone.left.size()) / static_cast<double>(bone.bricks);
+            legend_.entries.push_back(
+                {fmt::format("{}: the surface is being made, {:.0f} %", node_of(port), 1e2 * done), still_colour});
+            continue;
+        }
         part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
         find_scan(bone, *seen);

@@ -170,6 +170,7 @@ private:
         display::Bounds bounds;
         int scan = -1;
         std::set<std::uint32_t> left;  ///< bricks to be meshed
+        std::size_t bricks = 0;  ///< of the first mesh
         bool is_whole = false;  ///< every brick was meshed once
         DensityCopy density = {};
         analysis::Beside<display::GreyImage> greying = {};
@@ -256,7 +257,9 @@ private:
     void show_scan(int scan, const Pose& to_scan);
     void take_body(const MadeBody& made);
     void do_not_make(std::uint64_t content, const std::string& why);
-    bool has_time() const { return !is_spread_ || std::chrono::steady_clock::now() < until_; }
+    bool has_time(std::chrono::milliseconds more = {}) const {
+        return !is_spread_ || std::chrono::steady_clock::now() < until_ + more;
+    }
     BodyMesh* mesh_of(std::uint64_t content, const Vec3& colour);
 
     SceneOutline outline_;
