@@ -270,8 +270,13 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
     if (!large) {
         // Many boxes, too small for visible round corners.
         paint.box(box, edge);
-        return paint.box({box.left + 1.0, box.top + title_height * z, box.right - 1.0, box.bottom - 1.0},
-                         node.colour.empty() ? tone::node : head_ink);
+        paint.box({box.left + 1.0, box.top + title_height * z, box.right - 1.0, box.bottom - 1.0},
+                  node.colour.empty() ? tone::node : head_ink);
+        // The name across the box, where that is large enough for some letters.
+        if (const double size = readable * unit_; box.height() > size && box.width() > 3.0 * size)
+            paint.text({box.left + 2.0, box.top}, size, tone::text,
+                       paint.shortened(node.name, size, box.width() - 4.0));
+        return;
     }
     paint.box(box, tone::node, rounding * z);
     Box head = box;
