@@ -160,7 +160,13 @@ void PlanPanel::candidates() {
         if (ImGui::SmallButton("cancel")) fits_.cancel();
         mark_spot("cancel search");
     }
-    if (placing_.is_busy()) ImGui::TextDisabled("measuring ...");
+    if (placing_.is_busy()) {
+        ImGui::TextDisabled("measuring ...");
+        mark_spot("place is measured");
+        ImGui::SameLine();
+        if (ImGui::SmallButton("cancel##measuring")) placing_.let_go();
+        mark_spot("cancel measuring");
+    }
     if (!placed_.empty()) {
         ImGui::TextWrapped("%s", placed_.c_str());
         mark_spot("placed");
