@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/guide_slot.hpp"
 
+#include "dsp/core/rotation.hpp"
+#include "dsp/saw/hand_limits.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -11,55 +14,13 @@ namespace tactus::saw {
 
 namespace {
 
-constexpr double fade_time = 0.05;  // s
 constexpr double entry = 0.3e-3;  // m by which a blade may miss the slot that it enters; it keeps that room
 constexpr double ledge_reach = 3e-3;  // m from a ledge within which it holds a blade
-constexpr double rounding = 1e-9;  // m
+constexpr double max_gap = 5e-3;  // m from its slot at which a blade is released
+constexpr double rounding = 1e-11;  // m
+constexpr double same_touch = 5e-6;  // m between two solutions of one touch
 constexpr double taken_over = 0.1e-3;  // m of the hand's spring over which a wall takes over the force on the blade
 constexpr double min_upright = 0.5;  // cosine of the angle beyond which a blade is in no slot
-
-double cross(double ax, double ay, double bx, double by) noexcept { return ax * by - ay * bx; }
-
-/// A vertex of the clipped blade and the edge that follows it.
-struct Vertex {
-    double x = 0.0, y = 0.0;
-    std::array<double, 4> drift{1.0, 0.0, 0.0, 1.0};
-    double along_x = 0.0, along_y = 0.0;
-    bool is_of_slot = false;  // that edge
-};
-
-struct Polygon {
-    std::array<Vertex, 12> at{};
-    std::size_t count = 0;
-    void add(const Vertex& v) noexcept {
-        if (count < at.size()) at[count++] = v;
-    }
-};
-
-/// Keeps where sign · (v[axis] − bound) ≤ 0 (Sutherland and Hodgman 1974).
-Polygon clipped(const Polygon& from, int axis, double sign, double bound) noexcept {
-    Polygon to;
-    const double line_x = axis == 1 ? 1.0 : 0.0, line_y = axis == 0 ? 1.0 : 0.0;
-    for (std::size_t n = 0; n < from.count; ++n) {
-        const Vertex &a = from.at[n], &b = from.at[(n + 1) % from.count];
-        const double out_a = sign * ((axis == 0 ? a.x : a.y) - bound), out_b = sign * ((axis == 0 ? b.x : b.y) - bound);
-        if (out_a <= 0.0) to.add(a);
-        if ((out_a <= 0.0) == (out_b <= 0.0)) continue;
-        const double share = out_a / (out_a - out_b);
-        Vertex v = a;
-        v.x = a.x + share * (b.x - a.x);
-        v.y = a.y + share * (b.y - a.y);
-        v.drift = {};
-        // Where an edge of the blade crosses one of the slot, the corner moves along the latter.
-        const double size = cross(line_x, line_y, a.along_x, a.along_y);
-        if (!a.is_of_slot && std::abs(size) > 1e-6)
-            v.drift = {line_x * a.along_y / size, -line_x * a.along_x / size, line_y * a.along_y / size,
-                       -line_y * a.along_x / size};
-        if (out_a <= 0.0) v.is_of_slot = true;
-        to.add(v);
-    }
-    return to;
-}
 
 /// Solves the symmetric system of `n` ≤ 3 rows; false if it is singular.
 bool solve_small(const std::array<std::array<double, 3>, 3>& m, const std::array<double, 3>& b, std::size_t n,
@@ -81,52 +42,124 @@ bool solve_small(const std::array<std::array<double, 3>, 3>& m, const std::array
     return true;
 }
 
+bool is_upright(const Pose& local) noexcept { return std::abs(local.rotate(Vec3(0.0, 0.0, 1.0)).z) >= min_upright; }
+
+/// The shortest rotation from one unit vector to another, less than half a turn apart.
+Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept {
+    const Vec3 axis = glm::cross(from, to);
+    return glm::normalize(Quat(1.0 + glm::dot(from, to), axis.x, axis.y, axis.z));
+}
+
+double beyond_ends(double at, double low, double high) noexcept { return at - std::clamp(at, low, high); }
+
 }  // namespace
 
 SlotHold::SlotHold(const SawShape& shape, const SlotSettings& settings) : shape_(shape), settings_(settings) {}
 
-std::size_t SlotHold::overlap(const GuideSlot& slot, const Pose& local,
-                              std::array<Corner, max_corners>& corners) const noexcept {
+SlotHold::Placement SlotHold::placed(const Pose& frame, const Pose& hand) const noexcept {
+    Placement at;
+    at.pose = frame.inverse() * hand;
+    const Vec3 z = at.pose.rotate(Vec3(0.0, 0.0, 1.0));
+    at.clamp = at.pose.apply(clamp_local());
+    at.plane = {at.clamp.z, -z.x / z.z, -z.y / z.z};
+    at.upright = shortest_turn(z, Vec3(0.0, 0.0, std::copysign(1.0, z.z))) * at.pose.orientation;
+    // A blade that the walls have turned is as long as it is, not as a tilted hand shows it.
+    const Pose flat{at.clamp - at.upright * clamp_local(), at.upright};
     const double half = 0.5 * shape_.length;
-    const std::array<Vec3, 4> of_blade{Vec3(-half, 0.0, 0.0), Vec3(half, 0.0, 0.0), Vec3(half, -shape_.height, 0.0),
-                                       Vec3(-half, -shape_.height, 0.0)};
-    Polygon polygon;
+    at.outline = {flat.apply({-half, 0.0, 0.0}), flat.apply({half, 0.0, 0.0}), flat.apply({half, -shape_.height, 0.0}),
+                  flat.apply({-half, -shape_.height, 0.0})};
+    return at;
+}
+
+/// The point of the blade that is farthest beyond a wall: the greatest value of a concave function over a convex outline.
+SlotHold::Touch SlotHold::deepest(const GuideSlot& slot, const Placement& at, double sign,
+                                  const Vec3& plane) const noexcept {
+    const double gx = sign * plane[1], gy = sign * plane[2];
+    Touch best;
+    double most = -std::numeric_limits<double>::infinity();
+    const auto consider = [&](double x, double y) noexcept {
+        const double ex = beyond_ends(x, slot.low, slot.high), ey = beyond_ends(y, slot.top, slot.bottom);
+        const double recess = (ex * ex + ey * ey) / (2.0 * end_radius), value = gx * x + gy * y - recess;
+        if (!(value > most)) return;
+        most = value;
+        best.x = x, best.y = y, best.recess = recess;
+        best.slope_x = ex / end_radius, best.slope_y = ey / end_radius;
+    };
+    // Where the wall has the slope of the blade, if the blade reaches that far.
+    const auto inner = [&](double g, double low, double high) {
+        return g * end_radius + (g > 0.0 ? high : g < 0.0 ? low : 0.5 * (low + high));
+    };
+    const double x = inner(gx, slot.low, slot.high), y = inner(gy, slot.top, slot.bottom);
+    int left = 0, right = 0;
     for (std::size_t n = 0; n < 4; ++n) {
-        const Vec3 a = local.apply(of_blade[n]), b = local.apply(of_blade[(n + 1) % 4]);
-        Vertex v;
-        v.x = a.x, v.y = a.y, v.along_x = b.x - a.x, v.along_y = b.y - a.y;
-        const double length = std::hypot(v.along_x, v.along_y);
-        if (!(length > 0.0)) return 0;
-        v.along_x /= length, v.along_y /= length;
-        polygon.add(v);
+        const Vec3 &a = at.outline[n], &b = at.outline[(n + 1) % 4];
+        const double side = (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+        left += side >= 0.0, right += side <= 0.0;
     }
-    polygon = clipped(polygon, 0, -1.0, slot.low);
-    polygon = clipped(polygon, 0, 1.0, slot.high);
-    polygon = clipped(polygon, 1, -1.0, slot.top);
-    polygon = clipped(polygon, 1, 1.0, slot.bottom);
-    for (std::size_t n = 0; n < polygon.count; ++n)
-        corners[n] = {polygon.at[n].x, polygon.at[n].y, polygon.at[n].drift};
-    return polygon.count;
+    if (left == 4 || right == 4) {
+        consider(x, y);
+    } else {
+        for (std::size_t n = 0; n < 4; ++n) {
+            const Vec3& a = at.outline[n];
+            const Vec3 way = at.outline[(n + 1) % 4] - a;
+            // The slope along the edge falls; it is linear between the ends of the slot.
+            const auto slope = [&](double t) {
+                return gx * way.x + gy * way.y -
+                       (beyond_ends(a.x + t * way.x, slot.low, slot.high) * way.x +
+                        beyond_ends(a.y + t * way.y, slot.top, slot.bottom) * way.y) /
+                           end_radius;
+            };
+            std::array<double, 5> ends{1.0, 1.0, 1.0, 1.0, 1.0};
+            if (way.x != 0.0) ends[0] = (slot.low - a.x) / way.x, ends[1] = (slot.high - a.x) / way.x;
+            if (way.y != 0.0) ends[2] = (slot.top - a.y) / way.y, ends[3] = (slot.bottom - a.y) / way.y;
+            std::ranges::sort(ends);
+            double t = 0.0, rise = slope(0.0);
+            for (const double end : ends) {
+                if (rise <= 0.0) break;
+                const double to = std::clamp(end, t, 1.0), then = slope(to);
+                t = then < 0.0 ? t + (to - t) * rise / (rise - then) : to;
+                rise = std::max(then, 0.0);
+            }
+            consider(a.x + t * way.x, a.y + t * way.y);
+        }
+    }
+    best.sign = sign;
+    best.normal = sign * Vec3(1.0, (best.x - at.clamp.x) / settings_.lever, (best.y - at.clamp.y) / settings_.lever);
+    return best;
+}
+
+/// m by which a plane passes a wall at a point.
+double SlotHold::beyond(const GuideSlot& slot, const Placement& at, const Touch& touch,
+                        const Vec3& plane) const noexcept {
+    const auto [low, high] = bounds(slot);
+    const double z = plane[0] + plane[1] * (touch.x - at.clamp.x) + plane[2] * (touch.y - at.clamp.y);
+    return (touch.sign > 0.0 ? z - high : low - z) - touch.recess;
+}
+
+/// m between a slot and a blade beside it; 0: a part of the blade is in it.
+double SlotHold::gap(const GuideSlot& slot, const Placement& at) const noexcept {
+    return std::sqrt(2.0 * end_radius * deepest(slot, at, 1.0, Vec3(0.0)).recess);
+}
+
+bool SlotHold::stays_in(const GuideSlot& slot, const Placement& at) const noexcept {
+    const double away = gap(slot, at);
+    return away < max_gap && (away == 0.0 || miss(slot, at) > room_) && apart(slot, at) <= ledge_reach;
 }
 
 const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept {
-    hand_ = hand;
-    const auto local_of = [&](const GuideSlot& slot) { return slot.frame.inverse() * hand; };
-    const auto is_upright = [](const Pose& local) {
-        return std::abs(local.rotate(Vec3(0.0, 0.0, 1.0)).z) >= min_upright;
-    };
-    std::size_t count = 0;
     if (slot_ >= 0) {
         const auto n = static_cast<std::size_t>(slot_);
-        if (n < slots.size())
-            if (const Pose local = local_of(slots[n]); is_upright(local)) count = overlap(slots[n], local, corners_);
-        if (count > 0) {
-            place(slots[n].frame, hand);
-            if (apart(slots[n], std::span(corners_).first(count)) > ledge_reach) count = 0;
-        }
-        if (count == 0) {
+        const bool is_given = n < slots.size();
+        const Placement at = placed(is_given ? slots[n].frame : frame_, hand);
+        if (is_given && is_upright(at.pose) && stays_in(slots[n], at)) {
+            hand_ = at;
+        } else {
             slot_ = -1;
-            left_ = offset_ == Vec3(0.0) ? 0.0 : fade_time;
+            const double force = glm::length(spring_.force), torque = glm::length(spring_.torque) / settings_.lever;
+            const double length = stretch(), part = std::min(length, max_lag);
+            const double energy = settings_.stiffness * part * (length - 0.5 * part);
+            left_ = energy > 0.0 ? fade_time : 0.0;
+            fade_stiffness_ = energy > 0.0 ? (force * force + torque * torque) / (2.0 * energy) : 0.0;
         }
     }
     if (slot_ < 0) {
@@ -134,46 +167,34 @@ const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand,
             release(hand, dt);
             return guided_;
         }
-        offset_ = Vec3(0.0);
-        active_count_ = 0;
+        let_go();
         guided_ = hand;
-        double nearest = ledge_reach;
-        for (std::size_t n = 0; n < slots.size(); ++n) {
-            const Pose local = local_of(slots[n]);
-            if (!is_upright(local)) continue;
-            std::array<Corner, max_corners> corners;
-            const std::size_t found = overlap(slots[n], local, corners);
-            if (found == 0) continue;
-            place(slots[n].frame, hand);
-            const std::span<const Corner> region = std::span(corners).first(found);
-            const double missed = miss(slots[n], region), away = apart(slots[n], region);
-            if (missed > entry || away > nearest || (slot_ >= 0 && away == nearest)) continue;
-            nearest = away;
-            slot_ = static_cast<int>(n);
-            count = found;
-            corners_ = corners;
-            // A free blade has the play of the slot and no more.
-            room_ = std::max(0.0, missed);
-        }
+        enter(slots, hand);
         if (slot_ < 0) return guided_;
-        frame_ = slots[static_cast<std::size_t>(slot_)].frame;
     }
     const GuideSlot& slot = slots[static_cast<std::size_t>(slot_)];
-    place(slot.frame, hand);
-    const std::span<const Corner> corners = std::span(corners_).first(count);
+    frame_ = slot.frame;
     // Room that the blade had when it entered closes only as the hand itself gives it up: no energy comes of it.
-    room_ = std::min(room_, std::max(0.0, miss(slot, corners)));
-    solve(slot, corners);
+    room_ = std::min(room_, std::max(0.0, miss(slot, hand_)));
+    solve(slot);
     put();
+    pull();
     return guided_;
 }
 
-/// The plane of the hand in the frame of a slot.
-void SlotHold::place(const Pose& frame, const Pose& hand) noexcept {
-    const Pose local = frame.inverse() * hand;
-    const Vec3 clamp = local.apply(clamp_local()), z = local.rotate(Vec3(0.0, 0.0, 1.0));
-    clamp_x_ = clamp.x, clamp_y_ = clamp.y;
-    plane_ = {clamp.z, -z.x / z.z, -z.y / z.z};
+void SlotHold::enter(std::span<const GuideSlot> slots, const Pose& hand) noexcept {
+    double nearest = ledge_reach;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+        const Placement at = placed(slots[n].frame, hand);
+        if (!is_upright(at.pose) || gap(slots[n], at) > 0.0) continue;
+        const double missed = miss(slots[n], at), away = apart(slots[n], at);
+        if (missed > entry || away > nearest || (slot_ >= 0 && away == nearest)) continue;
+        nearest = away;
+        slot_ = static_cast<int>(n);
+        hand_ = at;
+        // A free blade has the play of the slot and no more.
+        room_ = std::max(0.0, missed);
+    }
 }
 
 Vec3 SlotHold::clamp_local() const noexcept {
@@ -188,178 +209,210 @@ std::array<double, 2> SlotHold::bounds(const GuideSlot& slot) const noexcept {
     return {0.5 * (low + high), 0.5 * (low + high)};
 }
 
-double SlotHold::miss(const GuideSlot& slot, std::span<const Corner> corners) const noexcept {
-    const auto [low, high] = bounds(slot);
-    double most = -1.0;
-    for (const Corner& corner : corners) {
-        const double z = plane_[0] + plane_[1] * (corner.x - clamp_x_) + plane_[2] * (corner.y - clamp_y_);
-        most = std::max({most, low - z, z - high});
-    }
-    return most;
+double SlotHold::miss(const GuideSlot& slot, const Placement& at) const noexcept {
+    const double low = beyond(slot, at, deepest(slot, at, -1.0, at.plane), at.plane);
+    if (!std::isfinite(slot.other_wall)) return low;
+    return std::max(low, beyond(slot, at, deepest(slot, at, 1.0, at.plane), at.plane));
 }
 
-double SlotHold::apart(const GuideSlot& slot, std::span<const Corner> corners) const noexcept {
+double SlotHold::apart(const GuideSlot& slot, const Placement& at) const noexcept {
     if (std::isfinite(slot.other_wall)) return 0.0;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Corner& corner : corners)
-        least = std::min(least, plane_[0] + plane_[1] * (corner.x - clamp_x_) + plane_[2] * (corner.y - clamp_y_));
-    return std::max(0.0, least - bounds(slot)[0]);
+    return std::max(0.0, -beyond(slot, at, deepest(slot, at, -1.0, at.plane), at.plane));
 }
 
-void SlotHold::solve(const GuideSlot& slot, std::span<const Corner> corners) noexcept {
+/// Projection of the plane of the hand onto the convex set that the walls permit. Of all points of the blade at most three
+/// touch a wall. In each round the point that is farthest beyond a wall joins them, and the exact solution of those few
+/// constraints decides which of them stay (a dual active set, as Goldfarb and Idnani 1983). The distance grows with each round.
+void SlotHold::solve(const GuideSlot& slot) noexcept {
+    constexpr int max_rounds = 60;
     offset_ = Vec3(0.0);
-    active_count_ = 0;
-    // Projection of the origin onto {n·y ≤ b}, with y = √M·(c, a, b).
-    struct Row {
-        Vec3 n;
-        double b, sign;
-        std::size_t corner;
-    };
-    std::array<Row, 2 * max_corners> rows;
-    std::size_t count = 0;
-    const auto [low, high] = bounds(slot);
-    double worst = 0.0;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        const double x = corners[k].x - clamp_x_, y = corners[k].y - clamp_y_;
-        const double z = plane_[0] + plane_[1] * x + plane_[2] * y;
-        const Vec3 n(1.0, x / settings_.lever, y / settings_.lever);
-        rows[count++] = {-n, z - low + room_, -1.0, k};
-        if (std::isfinite(high)) rows[count++] = {n, high - z + room_, 1.0, k};
-    }
-    for (std::size_t i = 0; i < count; ++i) worst = std::min(worst, rows[i].b);
-    if (worst >= -rounding) return;
-
-    std::array<std::size_t, 3> best{};
-    std::array<double, 3> best_force{};
-    std::size_t best_size = 0;
-    double best_miss = std::numeric_limits<double>::infinity();
-    const auto attempt = [&](const std::array<std::size_t, 3>& set, std::size_t size) noexcept {
-        std::array<std::array<double, 3>, 3> gram{};
-        std::array<double, 3> right{}, force{};
-        for (std::size_t r = 0; r < size; ++r) {
-            right[r] = -rows[set[r]].b;
-            for (std::size_t c = 0; c < size; ++c) gram[r][c] = glm::dot(rows[set[r]].n, rows[set[c]].n);
-        }
-        if (!solve_small(gram, right, size, force)) return false;
-        Vec3 y(0.0);
-        for (std::size_t r = 0; r < size; ++r) {
-            if (!(force[r] > 0.0)) return false;
-            y -= force[r] * rows[set[r]].n;
-        }
-        double missed = 0.0;
-        for (std::size_t i = 0; i < count; ++i) missed = std::max(missed, glm::dot(rows[i].n, y) - rows[i].b);
-        if (missed < best_miss) best = set, best_size = size, best_force = force, best_miss = missed;
-        return missed <= rounding;
-    };
-    // Few constraints decide, and the optimum is unique: the first set that satisfies all conditions is it.
-    const auto search = [&]() noexcept {
-        for (std::size_t i = 0; i < count; ++i)
-            if (rows[i].b < 0.0 && attempt({i, 0, 0}, 1)) return;
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t j = i + 1; j < count; ++j)
-                if ((rows[i].b < 0.0 || rows[j].b < 0.0) && attempt({i, j, 0}, 2)) return;
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t j = i + 1; j < count; ++j)
-                for (std::size_t k = j + 1; k < count; ++k)
-                    if ((rows[i].b < 0.0 || rows[j].b < 0.0 || rows[k].b < 0.0) && attempt({i, j, k}, 3)) return;
-    };
-    search();
+    touch_count_ = 0;
+    std::array<Touch, max_touches + 2> rows;
+    std::array<double, max_touches + 2> wanted;  // n·y ≤ −wanted, with y = (c, a · lever, b · lever) of the offset
     Vec3 y(0.0);
-    for (std::size_t r = 0; r < best_size; ++r) {
-        const Row& row = rows[best[r]];
-        y -= best_force[r] * row.n;
-        active_[r] = {row.n, best_force[r] * settings_.stiffness, row.sign, row.corner};
+    const double lever = settings_.lever;
+    for (int round = 0; round < max_rounds; ++round) {
+        const Vec3 plane = hand_.plane + Vec3(y.x, y.y / lever, y.z / lever);
+        std::size_t count = touch_count_;
+        for (std::size_t n = 0; n < count; ++n) rows[n] = touches_[n];
+        for (const double sign : {-1.0, 1.0}) {
+            if (sign > 0.0 && !std::isfinite(slot.other_wall)) continue;
+            const Touch touch = deepest(slot, hand_, sign, plane);
+            if (beyond(slot, hand_, touch, plane) - room_ > rounding) rows[count++] = touch;
+        }
+        if (count == touch_count_) break;
+        for (std::size_t n = 0; n < count; ++n) wanted[n] = beyond(slot, hand_, rows[n], hand_.plane) - room_;
+
+        std::array<std::size_t, 3> best{};
+        std::array<double, 3> best_force{};
+        std::size_t best_size = 0;
+        double best_miss = std::numeric_limits<double>::infinity();
+        Vec3 best_y = y;
+        const auto attempt = [&](const std::array<std::size_t, 3>& set, std::size_t size) noexcept {
+            std::array<std::array<double, 3>, 3> gram{};
+            std::array<double, 3> right{}, force{};
+            for (std::size_t r = 0; r < size; ++r) {
+                right[r] = wanted[set[r]];
+                for (std::size_t c = 0; c < size; ++c) gram[r][c] = glm::dot(rows[set[r]].normal, rows[set[c]].normal);
+            }
+            if (!solve_small(gram, right, size, force)) return false;
+            Vec3 to(0.0);
+            for (std::size_t r = 0; r < size; ++r) {
+                if (!(force[r] > 0.0)) return false;
+                to -= force[r] * rows[set[r]].normal;
+            }
+            double missed = 0.0;
+            for (std::size_t i = 0; i < count; ++i) missed = std::max(missed, glm::dot(rows[i].normal, to) + wanted[i]);
+            if (missed < best_miss) best = set, best_size = size, best_force = force, best_miss = missed, best_y = to;
+            return missed <= 0.1 * rounding;
+        };
+        // Few constraints decide, and the optimum is unique: the first set that satisfies all conditions is it.
+        const auto search = [&]() noexcept {
+            for (std::size_t i = 0; i < count; ++i)
+                if (attempt({i, 0, 0}, 1)) return;
+            for (std::size_t i = 0; i < count; ++i)
+                for (std::size_t j = i + 1; j < count; ++j)
+                    if (attempt({i, j, 0}, 2)) return;
+            for (std::size_t i = 0; i < count; ++i)
+                for (std::size_t j = i + 1; j < count; ++j)
+                    for (std::size_t k = j + 1; k < count; ++k)
+                        if (attempt({i, j, k}, 3)) return;
+        };
+        search();
+        if (best_size == 0) break;
+        const std::array<Touch, max_touches + 2> all = rows;
+        for (std::size_t r = 0; r < best_size; ++r) {
+            touches_[r] = all[best[r]];
+            touches_[r].force = best_force[r];
+        }
+        touch_count_ = best_size;
+        y = best_y;
     }
-    active_count_ = best_size;
-    offset_ = {y.x, y.y / settings_.lever, y.z / settings_.lever};
+    offset_ = {y.x, y.y / lever, y.z / lever};
+    const double length = stretch();
+    stiffness_ = settings_.stiffness * (length > max_lag ? max_lag / length : 1.0);
+    for (std::size_t r = 0; r < touch_count_; ++r) touches_[r].force *= stiffness_;
+    // Two rounds may have found one touch twice.
+    for (std::size_t r = 0; r < touch_count_; ++r)
+        for (std::size_t c = touch_count_; c-- > r + 1;) {
+            Touch &a = touches_[r], b = touches_[c];
+            if (a.sign != b.sign || std::hypot(a.x - b.x, a.y - b.y) > same_touch) continue;
+            const double share = b.force / (a.force + b.force);
+            a.x += share * (b.x - a.x), a.y += share * (b.y - a.y);
+            a.slope_x += share * (b.slope_x - a.slope_x), a.slope_y += share * (b.slope_y - a.slope_y);
+            a.normal += share * (b.normal - a.normal);
+            a.force += b.force;
+            touches_[c] = touches_[--touch_count_];
+        }
 }
 
 /// The guided pose from the plane of the hand and its offset.
 void SlotHold::put() noexcept {
     if (offset_ == Vec3(0.0)) {
-        guided_ = hand_;
+        guided_ = frame_ * hand_.pose;
         return;
     }
-    const Pose local = frame_.inverse() * hand_;
-    const Vec3 z = local.rotate(Vec3(0.0, 0.0, 1.0)), plane = plane_ + offset_;
-    const Vec3 wanted = glm::normalize(Vec3(-plane[1], -plane[2], 1.0)) * (z.z < 0.0 ? -1.0 : 1.0);
-    const Vec3 axis = glm::cross(z, wanted);
-    const Quat turn = glm::normalize(Quat(1.0 + glm::dot(z, wanted), axis.x, axis.y, axis.z));
-    Pose to{{}, glm::normalize(turn * local.orientation)};
-    to.position = Vec3(clamp_x_, clamp_y_, plane[0]) - to.rotate(clamp_local());
+    const Vec3 plane = hand_.plane + offset_;
+    const Vec3 flat(0.0, 0.0, std::copysign(1.0, hand_.pose.rotate(Vec3(0.0, 0.0, 1.0)).z));
+    const Vec3 wanted = glm::normalize(Vec3(-plane[1], -plane[2], 1.0)) * flat.z;
+    Pose to{{}, glm::normalize(shortest_turn(flat, wanted) * hand_.upright)};
+    to.position = Vec3(hand_.clamp.x, hand_.clamp.y, plane[0]) - to.rotate(clamp_local());
     guided_ = frame_ * to;
     guided_.orientation = glm::normalize(guided_.orientation);
 }
 
-/// The guided plane stays where it was, and no farther from the hand than the fade permits.
+/// Torque on the hand of forces on the slopes of its plane: their work in a rotation. `general`: N, as of (c, a · lever, b · lever).
+Vec3 SlotHold::torque_of(const Vec3& general) const noexcept {
+    const Vec3 z = hand_.pose.rotate(Vec3(0.0, 0.0, 1.0));
+    const double by_a = general[1] * settings_.lever, by_b = general[2] * settings_.lever;
+    return glm::cross(z, Vec3(-by_a / z.z, -by_b / z.z, (by_a * z.x + by_b * z.y) / (z.z * z.z)));
+}
+
+/// The force of the springs, and that of the wedge: walls push a blade that is tilted against them, or beyond their ends, out of
+/// the slot. By the envelope theorem each touch counts as a point of the blade.
+void SlotHold::pull() noexcept {
+    const Vec3 general(offset_[0], offset_[1] * settings_.lever, offset_[2] * settings_.lever);
+    spring_ = {{0.0, 0.0, stiffness_ * general[0]}, torque_of(stiffness_ * general)};
+    const Vec3 plane = hand_.plane + offset_;
+    // How a rotation of the hand turns the blade in the plane of the slot: that of the shortest way into it.
+    const Vec3 z = hand_.pose.rotate(Vec3(0.0, 0.0, 1.0));
+    const double side = std::copysign(1.0, z.z);
+    const Vec3 heading = (Vec3(0.0, 0.0, 1.0) + side * z) / (1.0 + std::abs(z.z));
+    for (std::size_t r = 0; r < touch_count_; ++r) {
+        const Touch& touch = touches_[r];
+        const double x = touch.x - hand_.clamp.x, y = touch.y - hand_.clamp.y;
+        const double gx = touch.sign * plane[1] - touch.slope_x, gy = touch.sign * plane[2] - touch.slope_y;
+        spring_.force += touch.force * Vec3(touch.slope_x, touch.slope_y, 0.0);
+        spring_.torque -= touch.force * (gy * x - gx * y) * heading;
+    }
+}
+
+void SlotHold::let_go() noexcept {
+    left_ = 0.0;
+    offset_ = Vec3(0.0);
+    touch_count_ = 0;
+    spring_ = {};
+}
+
+/// The guided plane stays where it was, and no farther from the hand than the fade permits. The force becomes that of one
+/// spring per axis, which together hold the energy that was stored, and is stretched no further.
 void SlotHold::release(const Pose& hand, double dt) noexcept {
-    const Vec3 was = plane_ + offset_;
-    const double x = clamp_x_, y = clamp_y_, after = left_ - dt, kept = after > 1e-9 ? after / left_ : 0.0;
-    left_ = std::max(after, 0.0);
-    active_count_ = 0;
-    const Pose local = frame_.inverse() * hand;
-    if (std::abs(local.rotate(Vec3(0.0, 0.0, 1.0)).z) < 0.1 || kept == 0.0) {
-        left_ = 0.0;
-        offset_ = Vec3(0.0);
+    const Placement was = hand_;
+    const double after = left_ - dt, kept = after > 1e-9 ? after / left_ : 0.0;
+    hand_ = placed(frame_, hand);
+    left_ = after;
+    if (std::abs(hand_.pose.rotate(Vec3(0.0, 0.0, 1.0)).z) < 0.1 || kept == 0.0) {
+        let_go();
         guided_ = hand;
         return;
     }
-    place(frame_, hand);
-    const Vec3 now(was[0] + was[1] * (clamp_x_ - x) + was[2] * (clamp_y_ - y), was[1], was[2]);
+    const auto fade = [kept](double from, double to) {
+        const double most = kept * std::abs(from);
+        return to * from > 0.0 ? std::clamp(to, -most, most) : 0.0;
+    };
+    const Vec3 way = hand_.clamp - was.clamp, turn = rotation_between(was.pose.orientation, hand_.pose.orientation);
+    const Vec3 plane = was.plane + offset_;
+    const Vec3 now(plane[0] + plane[1] * way.x + plane[2] * way.y, plane[1], plane[2]);
+    const double by_turn = fade_stiffness_ * settings_.lever * settings_.lever;
     for (int n = 0; n < 3; ++n) {
-        const double to = now[n] - plane_[n], most = kept * std::abs(offset_[n]);
-        offset_[n] = to * offset_[n] > 0.0 ? std::clamp(to, -most, most) : 0.0;
+        offset_[n] = fade(offset_[n], now[n] - hand_.plane[n]);
+        spring_.force[n] = fade(spring_.force[n], spring_.force[n] - fade_stiffness_ * way[n]);
+        spring_.torque[n] = fade(spring_.torque[n], spring_.torque[n] - by_turn * turn[n]);
     }
     put();
 }
 
-double SlotHold::force() const noexcept {
-    const double k = settings_.stiffness;
-    return k * std::sqrt(offset_[0] * offset_[0] +
-                         settings_.lever * settings_.lever * (offset_[1] * offset_[1] + offset_[2] * offset_[2]));
+double SlotHold::stretch() const noexcept {
+    return glm::length(Vec3(offset_[0], settings_.lever * offset_[1], settings_.lever * offset_[2]));
 }
 
+double SlotHold::force() const noexcept { return settings_.stiffness * std::min(stretch(), max_lag); }
+
 Wrench SlotHold::on_hand(const Wrench& on_blade) const noexcept {
-    if (offset_ == Vec3(0.0)) return on_blade;
-    const double k = settings_.stiffness, turn = k * settings_.lever * settings_.lever;
-    const Pose local = frame_.inverse() * hand_, blade = frame_.inverse() * guided_;
+    if (touch_count_ == 0) return on_blade;
+    const Pose blade = frame_.inverse() * guided_;
     const Quat back = glm::conjugate(frame_.orientation);
-    const Vec3 clamp = local.apply(clamp_local());
     Vec3 force = back * on_blade.force;
     Vec3 torque = back * on_blade.torque + glm::cross(blade.position - blade.apply(clamp_local()), force);
-    // What the walls carry of the force on the blade: nothing of it in the directions that they leave free.
+    // What the walls carry of the force on the blade: nothing of it in the directions that they leave free. A wall that is just
+    // touched carries nothing yet, and takes over as the spring is stretched.
     Vec3 general(force.z, -torque.y / settings_.lever, torque.x / settings_.lever);
     std::array<std::array<double, 3>, 3> gram{};
-    std::array<double, 3> right{}, share{};
-    for (std::size_t r = 0; r < active_count_; ++r) {
-        right[r] = glm::dot(active_[r].normal, general);
-        for (std::size_t c = 0; c < active_count_; ++c) gram[r][c] = glm::dot(active_[r].normal, active_[c].normal);
+    std::array<double, 3> right{}, carried{};
+    const double faded = slot_ >= 0 ? 1.0 : left_ / fade_time;
+    for (std::size_t r = 0; r < touch_count_; ++r) {
+        const Touch& touch = touches_[r];
+        right[r] = glm::dot(touch.normal, general);
+        for (std::size_t c = 0; c < touch_count_; ++c) gram[r][c] = glm::dot(touch.normal, touches_[c].normal);
+        const double share = std::clamp(touch.force / (stiffness_ * taken_over), 1e-9, 1.0) * faded;
+        gram[r][r] += gram[r][r] * (1.0 / share - 1.0);
     }
-    if (active_count_ > 0 && solve_small(gram, right, active_count_, share))
-        // From nothing on, as the spring is stretched: a wall that is just touched carries nothing yet.
-        for (std::size_t r = 0; r < active_count_; ++r)
-            general -= std::min(1.0, active_[r].force / (k * taken_over)) * share[r] * active_[r].normal;
-    general += Vec3(k * offset_[0], turn * offset_[1] / settings_.lever, turn * offset_[2] / settings_.lever);
-
-    // Work of the slopes in a rotation of the hand.
-    const Vec3 z = local.rotate(Vec3(0.0, 0.0, 1.0));
-    const double by_a = general[1] * settings_.lever, by_b = general[2] * settings_.lever;
-    const Vec3 by_z(-by_a / z.z, -by_b / z.z, (by_a * z.x + by_b * z.y) / (z.z * z.z));
+    if (solve_small(gram, right, touch_count_, carried))
+        for (std::size_t r = 0; r < touch_count_; ++r) general -= carried[r] * touches_[r].normal;
     force.z = general[0];
-    torque = Vec3(0.0, 0.0, torque.z) + glm::cross(z, by_z);
-    // Corners move with the blade in the plane of the slot: a tilted blade that is held at its corners is wedged.
-    const Vec3 plane = plane_ + offset_;
-    for (std::size_t r = 0; r < active_count_; ++r) {
-        const Corner& corner = corners_[active_[r].corner];
-        const double push = active_[r].force * active_[r].sign;
-        const double gx = corner.drift[0] * plane[1] + corner.drift[2] * plane[2],
-                     gy = corner.drift[1] * plane[1] + corner.drift[3] * plane[2];
-        force.x -= push * (gx - plane[1]);
-        force.y -= push * (gy - plane[2]);
-        const double x = corner.x - clamp_x_, y = corner.y - clamp_y_, rise = plane_[1] * x + plane_[2] * y;
-        torque -= push * Vec3(-gy * rise, gx * rise, gy * x - gx * y);
-    }
-    torque += glm::cross(clamp - local.position, force);
+    force += spring_.force;
+    torque = Vec3(0.0, 0.0, torque.z) + torque_of(general) + spring_.torque +
+             glm::cross(hand_.clamp - hand_.pose.position, force);
     return {frame_.orientation * force, frame_.orientation * torque};
 }
 

@@ -32,19 +32,27 @@ struct SlotSettings {
 
 /// The pose of the hand, moved no farther than the slot requires.
 ///
-/// In the frame of the slot a blade is a plane z = c + a·x + b·y. Walls bound it at the corners of the region in which
-/// blade and slot overlap, so all poses that they permit are a convex polytope in (c, a, b). The guided pose is the
-/// nearest of them in the metric of the springs, computed exactly: the force is the gradient of an energy and therefore
-/// passive, and walls are rigid, however soft the springs. Contact with each of the balls of `ToolBody` would not do:
-/// its force bends the hand, but a tilted hand would still tilt the teeth, without limit on a device without torque.
+/// In the frame of the slot a blade is a plane z = c + a·x + b·y. Two walls bound it wherever it is in the slot. Beyond the
+/// ends of the slot they recede as parabolas of `end_radius`, as far as the blade reaches. The poses that they permit are a
+/// convex set in (c, a, b). The guided pose is the nearest of them in the metric of the springs: the walls are rigid, however
+/// soft the springs, and the force is the gradient of an energy and therefore passive. Since the ends are round, a contact
+/// moves where a corner of the blade passes one of the slot, and the force turns with it; at sharp ends it would jump.
+/// Contact with each of the balls of `ToolBody` would not do: its force bends the hand, but a tilted hand would still tilt
+/// the teeth, without limit on a device without torque.
+///
+/// The force grows up to `stiffness` · `max_lag`. A hand beyond that feels a constant force; the blade stays in the slot.
 class SlotHold {
 public:
+    static constexpr double end_radius = 4e-3;  ///< m
+    static constexpr double fade_time = 0.1;  ///< s
+
     SlotHold() = default;
     SlotHold(const SawShape& shape, const SlotSettings& settings);
 
     /// One tick of `dt` s. The nearest slot holds the blade from when it is entered, with the blade between its walls, until
-    /// no part of the blade is left between them. Its force then fades over 50 ms. If no slots are given, the blade is
-    /// released in the same way. Allocates nothing.
+    /// the blade has left it and its round ends do not touch it any more. A blade that is turned out of its slot, or farther
+    /// from it than 5 mm, is released, as is one for which no slots are given: the force fades over `fade_time`.
+    /// Allocates nothing.
     const Pose& follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept;
     /// The hand jumped: without a fade.
     void drop() noexcept { *this = SlotHold(shape_, settings_); }
@@ -59,45 +67,59 @@ public:
     double force() const noexcept;
 
 private:
-    static constexpr std::size_t max_corners = 12;
-    /// A corner of the overlap, in the frame of the slot. `drift` maps a motion of the blade in the plane of the slot to
-    /// that of the corner: 0 for one of the slot, 1 for one of the blade.
-    struct Corner {
-        double x = 0.0, y = 0.0;
-        std::array<double, 4> drift{};  // row by row
-    };
-    struct Active {
+    /// Where the blade touches a wall, in the frame of the slot.
+    struct Touch {
+        double x = 0.0, y = 0.0;  // m
+        double slope_x = 0.0, slope_y = 0.0;  // of the wall, which recedes
+        double recess = 0.0;  // m by which the wall has receded
+        double sign = 1.0;  // 1: the wall at greater z
         Vec3 normal{0.0};  // of the constraint in (c, a · lever, b · lever)
-        double force = 0.0;  // its multiplier, N
-        double sign = 1.0;
-        std::size_t corner = 0;
+        double force = 0.0;  // N, its multiplier
+    };
+    static constexpr std::size_t max_touches = 3;
+    /// The blade of the hand in the frame of a slot.
+    struct Placement {
+        Pose pose;
+        Quat upright{1.0, 0.0, 0.0, 0.0};  // its orientation, turned the shortest way into the plane of the slot
+        std::array<Vec3, 4> outline{};  // of the blade in that plane, at the clamp
+        Vec3 clamp{0.0};
+        Vec3 plane{0.0};  // (c, a, b), c at the clamp
     };
 
-    std::size_t overlap(const GuideSlot& slot, const Pose& local,
-                        std::array<Corner, max_corners>& corners) const noexcept;
-    void solve(const GuideSlot& slot, std::span<const Corner> corners) noexcept;
+    Placement placed(const Pose& frame, const Pose& hand) const noexcept;
+    Touch deepest(const GuideSlot& slot, const Placement& at, double sign, const Vec3& plane) const noexcept;
+    double beyond(const GuideSlot& slot, const Placement& at, const Touch& touch, const Vec3& plane) const noexcept;
+    double gap(const GuideSlot& slot, const Placement& at) const noexcept;
+    bool stays_in(const GuideSlot& slot, const Placement& at) const noexcept;
+    void enter(std::span<const GuideSlot> slots, const Pose& hand) noexcept;
+    void solve(const GuideSlot& slot) noexcept;
+    void pull() noexcept;
     void release(const Pose& hand, double dt) noexcept;
-    void place(const Pose& frame, const Pose& hand) noexcept;
+    void let_go() noexcept;
     void put() noexcept;
+    Vec3 torque_of(const Vec3& general) const noexcept;
     Vec3 clamp_local() const noexcept;
     std::array<double, 2> bounds(const GuideSlot& slot) const noexcept;
     /// m by which the blade of the hand passes the walls; negative: it is free.
-    double miss(const GuideSlot& slot, std::span<const Corner> corners) const noexcept;
+    double miss(const GuideSlot& slot, const Placement& at) const noexcept;
     /// m between the blade of the hand and a ledge; 0 between two walls.
-    double apart(const GuideSlot& slot, std::span<const Corner> corners) const noexcept;
+    double apart(const GuideSlot& slot, const Placement& at) const noexcept;
+    /// m, of the springs, in the metric of the clamp.
+    double stretch() const noexcept;
 
     SawShape shape_;
     SlotSettings settings_;
     int slot_ = -1;
     double left_ = 0.0;  // s of the fade
     double room_ = 0.0;  // m beyond the walls
-    Pose frame_, hand_, guided_;
-    Vec3 plane_{0.0};  // (c, a, b) of the hand, c at the clamp
-    Vec3 offset_{0.0};  // of the guided plane from it
-    double clamp_x_ = 0.0, clamp_y_ = 0.0;  // of the clamp in the slot
-    std::array<Corner, max_corners> corners_{};
-    std::array<Active, 3> active_{};
-    std::size_t active_count_ = 0;
+    double stiffness_ = 0.0;  // N/m: beyond `max_lag` less than that of the settings
+    double fade_stiffness_ = 0.0;  // N/m, of the springs into which a release turns the force
+    Pose frame_, guided_;
+    Placement hand_;
+    Vec3 offset_{0.0};  // of the guided plane from that of the hand
+    Wrench spring_;  // on the hand about the clamp, frame of the slot
+    std::array<Touch, max_touches> touches_{};
+    std::size_t touch_count_ = 0;
 };
 
 }  // namespace tactus::saw

@@ -5,6 +5,7 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
+#include "dsp/saw/hand_limits.hpp"
 #include "dsp/simulate/script.hpp"
 #include "dsp/training/removed.hpp"
 #include "tests/dsp/saw/sawing.hpp"
@@ -222,11 +223,45 @@ TEST_CASE("a ledge is reached from afar without a force, and lets the blade go o
     CHECK(at(20.6 * mm) > 0.05);
 }
 
-TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
+/// A hand that goes into the slot, presses in all directions, and comes back to where it started.
+struct SlotPath {
+    Random random;
+    std::uint64_t run = 0;
+
+    Pose operator()(double s) const {
+        const double in = std::clamp(std::min(s, 1.0 - s) / 0.2, 0.0, 1.0), aside = in * in * (3.0 - 2.0 * in);
+        double v[6] = {};
+        for (std::uint64_t axis = 0; axis < 6; ++axis)
+            for (std::uint64_t h = 1; h <= 3; ++h)
+                v[axis] += random.normal(100 * run + 10 * axis + h) / static_cast<double>(h) *
+                           std::sin(2.0 * M_PI * static_cast<double>(h) * s);
+        const double loose = std::clamp((aside - 0.5) / 0.5, 0.0, 1.0);
+        return {Vec3(3.0 * mm * v[0] * aside, 0.25 * mm + 1.0 * mm * v[1] * loose,
+                     20.0 * mm - 18.0 * mm * aside + 3.0 * mm * v[2] * loose),
+                rotation_by(0.1 * loose * Vec3(v[3], v[4], v[5])) * teeth_down};
+    }
+};
+
+/// The largest change of the force between two of 256 steps of a tick that goes from `from` to `to`.
+double largest_step(saw::SlotHold hold, const std::vector<saw::GuideSlot>& slots, const SlotPath& path, double from,
+                    double to) {
+    double largest = 0.0;
+    Vec3 last = hold.on_hand({}).force;
+    for (int n = 1; n <= 256; ++n) {
+        hold.follow(slots, path(from + (to - from) * n / 256.0), 1e-3);
+        const Vec3 now = hold.on_hand({}).force;
+        largest = std::max(largest, glm::length(now - last));
+        last = now;
+    }
+    return largest;
+}
+
+TEST_CASE("the force of a slot is passive and continuous, wherever a corner of a wedged blade passes one of the slot") {
     const saw::SawShape shape = guided_blade();
     const std::vector<saw::GuideSlot> slots{slot_above()};
-    const Random random{11};
+    int refined = 0;
     for (std::uint64_t run = 0; run < 30; ++run) {
+        const SlotPath path{Random{11}, run};
         saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
         double work = 0.0, bound = 0.0, most = 0.0, jump = 0.0;
         Pose last;
@@ -234,16 +269,8 @@ TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
         constexpr int ticks = 4000;
         for (int n = 0; n <= ticks; ++n) {
             const double s = static_cast<double>(n) / ticks;
-            const double in = std::clamp(std::min(s, 1.0 - s) / 0.2, 0.0, 1.0), aside = in * in * (3.0 - 2.0 * in);
-            double v[6] = {};
-            for (std::uint64_t axis = 0; axis < 6; ++axis)
-                for (std::uint64_t h = 1; h <= 3; ++h)
-                    v[axis] += random.normal(100 * run + 10 * axis + h) / static_cast<double>(h) *
-                               std::sin(2.0 * M_PI * static_cast<double>(h) * s);
-            const double loose = std::clamp((aside - 0.5) / 0.5, 0.0, 1.0);
-            const Pose hand{Vec3(3.0 * mm * v[0] * aside, 0.25 * mm + 1.0 * mm * v[1] * loose,
-                                 20.0 * mm - 18.0 * mm * aside + 3.0 * mm * v[2] * loose),
-                            rotation_by(0.1 * loose * Vec3(v[3], v[4], v[5])) * teeth_down};
+            const Pose hand = path(s);
+            const saw::SlotHold before = hold;
             hold.follow(slots, hand, 1e-3);
             const Wrench now = hold.on_hand({});
             if (n > 0) {
@@ -252,20 +279,85 @@ TEST_CASE("a slot gives a hand that comes back to where it started no energy") {
                 work += glm::dot(felt.force, way) + glm::dot(felt.torque, turn);
                 bound += 0.5 * (std::abs(glm::dot(now.force - felt.force, way)) +
                                 std::abs(glm::dot(now.torque - felt.torque, turn)));
-                // Where a corner of the blade passes one of the slot, the force of the wedged blade turns by some degrees.
-                jump = std::max(jump, glm::length(now.force - felt.force) -
-                                          10e3 * (glm::length(way) + 60.0 * mm * glm::length(turn)) -
-                                          0.06 * glm::length(felt.force));
+                if (glm::length(now.force - felt.force) > 0.5) {
+                    ++refined;
+                    jump = std::max(jump, largest_step(before, slots, path, s - 1.0 / ticks, s));
+                }
             }
             most = std::max(most, glm::length(now.force));
             felt = now;
             last = hand;
         }
-        CAPTURE(run, work * 1e3, bound * 1e3, most, jump);
+        CAPTURE(run, work * 1e3, bound * 1e3, most);
         CHECK(work <= 1.02 * bound + 1e-6);
         CHECK(glm::length(felt.force) == 0.0);
         CHECK(most > 1.0);
-        CHECK(jump < 0.3);
+        CHECK(jump < 0.1);
+    }
+    CHECK(refined > 50);
+}
+
+TEST_CASE("the force of a slot stops growing where a hand is far beyond its walls, and the blade stays in it") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    constexpr double stiffness = 10e3;
+    for (const double along : {1.0, 3.0, 8.0, 14.0})
+        for (const double turn : {-0.9, 0.0, 0.9}) {
+            saw::SlotHold hold(shape, {.stiffness = stiffness, .thickness = kerf});
+            double largest = 0.0, springs = 0.0, held = 0.0;
+            for (int n = 0; n <= 1000; ++n) {
+                const double far = n / 1000.0;
+                const Pose hand{Vec3(0.0, 0.25 * mm + 60.0 * mm * far, 15.5 * mm - along * mm),
+                                rotation_by(Vec3(turn * far, 0.0, 0.0)) * teeth_down};
+                const Pose at = hold.follow(slots, hand, 1e-3);
+                if (hold.slot() < 0) break;
+                springs = std::max(springs, hold.force());
+                largest = std::max(largest, glm::length(hold.on_hand({}).force));
+                held = std::max(held, beyond_walls(slots[0], shape, at));
+            }
+            CAPTURE(along, turn, largest);
+            CHECK(springs <= stiffness * saw::max_lag);
+            CHECK(largest > 0.3 * stiffness * saw::max_lag);
+            // Walls that hold a blade by its last millimetre wedge it out with more than the springs have.
+            CHECK(largest <= (along > 1.0 ? 2.0 : 6.0) * stiffness * saw::max_lag);
+            CHECK(held < 0.01 * mm);
+        }
+}
+
+TEST_CASE("a slot that is taken away lets its force fade, and gives no more energy than was stored") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    const Random random{5};
+    for (std::uint64_t run = 0; run < 50; ++run) {
+        saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+        const auto drawn = [&](std::uint64_t n) { return random.normal(20 * run + n); };
+        const Quat tilt = rotation_by(0.1 * Vec3(drawn(1), drawn(2), drawn(3))) * teeth_down;
+        Pose hand{Vec3(0.0, 0.25 * mm, 14.0 * mm), teeth_down};
+        hold.follow(slots, hand, 1e-3);
+        REQUIRE(hold.slot() == 0);
+        for (int n = 1; n <= 100; ++n) {
+            hand = {Vec3(0.0, 0.25 * mm + 2.0 * mm * drawn(4) * n / 100.0, 14.0 * mm - 8.0 * mm * n / 100.0),
+                    glm::slerp(teeth_down, tilt, n / 100.0)};
+            hold.follow(slots, hand, 1e-3);
+        }
+        const double stored = 0.5 * hold.force() * hold.force() / 10e3;
+        Wrench felt = hold.on_hand({});
+        double work = 0.0, largest = 0.0;
+        const double all = glm::length(felt.force);
+        // The hand is let go: it moves as the force wants, slowly enough to take all that is there.
+        for (int n = 0; n < 120; ++n) {
+            const Vec3 way = felt.force * 2e-6, turn = felt.torque * 0.02;
+            hand.position += way;
+            hand.orientation = glm::normalize(rotation_by(turn) * hand.orientation);
+            work += glm::dot(felt.force, way) + glm::dot(felt.torque, turn);
+            hold.follow({}, hand, 1e-3);
+            const Wrench now = hold.on_hand({});
+            largest = std::max(largest, glm::length(now.force - felt.force));
+            felt = now;
+        }
+        CAPTURE(run, all, work, stored, largest);
+        CHECK(work <= 1.3 * stored + 1e-9);
+        CHECK(glm::length(felt.force) == 0.0);
     }
 }
 
