@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 
@@ -44,5 +45,26 @@ inline Vec3 rotation_near(const Quat& from, const Quat& to, const Vec3& before) 
     const Vec3 a = short_way - before, b = long_way - before;
     return glm::dot(a, a) <= glm::dot(b, b) ? short_way : long_way;
 }
+
+/// A spring in rotation whose torque has no jump: k·θ up to 3/4 of half a turn, and from there in a straight line to 0 at half
+/// a turn, where the shortest rotation changes its sign. Conservative over all rotations.
+struct TurnSpring {
+    static constexpr double straight = 0.75 * std::numbers::pi;  ///< rad
+
+    /// θ of a torque k·θ for the rotation vector `turn`, rad.
+    static Vec3 effective(const Vec3& turn) noexcept {
+        const double angle = glm::length(turn);
+        if (angle <= straight) return turn;
+        constexpr double slope = straight / (std::numbers::pi - straight);
+        return turn * (slope * std::max(0.0, std::numbers::pi - angle) / angle);
+    }
+    /// Twice its energy over k, rad².
+    static double square(const Vec3& turn) noexcept {
+        const double angle = glm::length(turn);
+        if (angle <= straight) return angle * angle;
+        const double left = std::max(0.0, std::numbers::pi - angle), all = std::numbers::pi - straight;
+        return straight * (straight + all - left * left / all);
+    }
+};
 
 }  // namespace tactus::coupling

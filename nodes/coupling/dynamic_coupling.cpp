@@ -24,7 +24,9 @@ struct DynamicCoupling {
     In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: from its poses", "m/s, rad/s"};
     In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: 'grip_at'", "m"};
     In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
-    In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
+    In<double> strength{
+        optional,
+        "share of the force that the hand feels, 0 to 1; unconnected: 1, and 0 from 0.1 s after 'holding' ended"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body", "m"};
     Out<double> place{"place of the held body in the scene; -1: none"};
@@ -55,7 +57,7 @@ struct DynamicCoupling {
     }
 
     void process(const Tick& tick) noexcept {
-        hold_.update(scene, held, holding, strength);
+        hold_.update(scene, held, holding, strength, tick.elapsed_seconds());
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{grip_at, {1.0, 0.0, 0.0, 0.0}};
         contact.set(*contact_, scene, hold_.place, in_hand);
         solver_.settings = {{{stiffness, max_force}, {angular_stiffness, max_torque}},

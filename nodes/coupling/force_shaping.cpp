@@ -10,7 +10,8 @@ namespace tactus::nodes {
 
 struct ForceShaping {
     static constexpr auto about =
-        "Shapes a wrench for a device: gain, low-pass against vibration, and a soft limit below that of a device.";
+        "Shapes a wrench for a device: gain, low-pass against vibration, and a soft limit below that of a device. A "
+        "wrench that is not finite is passed on, so that device_output takes the force away.";
 
     In<Wrench> in{"the wrench to shape", "N, N m"};
     Out<Wrench> wrench{"the shaped wrench", "N, N m"};
@@ -22,12 +23,15 @@ struct ForceShaping {
     Param cutoff{"0 Hz", "0 Hz", "10 kHz", "of a first-order low-pass, which adds delay; 0: none"};
 
     void process(const Tick& tick) noexcept {
-        const Wrench now = is_finite(in.get()) ? in.get() * gain : Wrench{};
+        const Wrench now = in.get() * gain;
+        if (!is_finite(now)) {
+            wrench = now;
+            return;
+        }
         // Exact for an input that is constant between ticks.
         const double share =
             cutoff > 0.0 ? -std::expm1(-2.0 * std::numbers::pi * cutoff * tick.elapsed_seconds()) : 1.0;
         smooth_ = smooth_ + (now + smooth_ * -1.0) * share;
-        if (!is_finite(smooth_)) smooth_ = {};
         wrench = {coupling::soft_limit(smooth_.force, straight_force, max_force),
                   coupling::soft_limit(smooth_.torque, straight_torque, max_torque)};
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/rotation.hpp"
+#include "dsp/coupling/coupling_spring.hpp"
 #include "dsp/coupling/shared_energy.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/visual.hpp"
@@ -26,7 +27,8 @@ struct HandCoupling {
     Out<double> granted_b{"power that the other may be given", "W"};
     Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "force per distance between the hands"};
     Param damping{"0 N s/m", "0 N s/m", "50 N s/m", "force per relative velocity"};
-    Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad", "torque per angle between the hands"};
+    Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad",
+                            "torque per angle between the hands; it falls from 135° to nothing at 180°"};
     Param angular_damping{"0 N m s/rad", "0 N m s/rad", "1 N m s/rad", "torque per relative angular velocity"};
 
     std::vector<Visual> visuals() const {
@@ -34,14 +36,16 @@ struct HandCoupling {
     }
 
     void process(const Tick& tick) noexcept {
-        const Vec3 away = b->position - a->position, angle = rotation_between(a->orientation, b->orientation);
+        using tactus::coupling::TurnSpring;
+        const Vec3 away = b->position - a->position, turn = rotation_between(a->orientation, b->orientation);
+        const Vec3 angle = TurnSpring::effective(turn);
         const Wrench wrench{
             away * stiffness.value + (b_twist->linear - a_twist->linear) * damping.value,
             angle * angular_stiffness.value + (b_twist->angular - a_twist->angular) * angular_damping.value};
         on_a = wrench;
         on_b = wrench * -1.0;
         const double stored =
-            0.5 * stiffness.value * glm::dot(away, away) + 0.5 * angular_stiffness.value * glm::dot(angle, angle);
+            0.5 * stiffness.value * glm::dot(away, away) + 0.5 * angular_stiffness.value * TurnSpring::square(turn);
         const auto grants = energy_.tick({{{a.get(), on_a.get()}, {b.get(), on_b.get()}}}, stored,
                                          std::max(tick.elapsed_seconds(), seconds(tick.period)));
         granted_a = grants[0];

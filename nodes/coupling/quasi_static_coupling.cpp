@@ -27,7 +27,9 @@ struct QuasiStaticCoupling {
     In<tactus::coupling::Scene> scene{"the bodies, with the held one among them"};
     In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: 'grip_at'", "m"};
     In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
-    In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
+    In<double> strength{
+        optional,
+        "share of the force that the hand feels, 0 to 1; unconnected: 1, and 0 from 0.1 s after 'holding' ended"};
     In<Pose> target{optional, of_world, "pose that the held body is pulled to while 'guided'", "m"};
     In<bool> guided{optional, "pull the body to the target; unconnected: false"};
     In<bool> has_target{optional, of_world, "the target is valid; unconnected: true"};
@@ -61,7 +63,7 @@ struct QuasiStaticCoupling {
     }
 
     void process(const Tick& tick) noexcept {
-        hold_.update(scene, held, holding, strength);
+        hold_.update(scene, held, holding, strength, tick.elapsed_seconds());
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{grip_at, {1.0, 0.0, 0.0, 0.0}};
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();

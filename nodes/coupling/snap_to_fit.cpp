@@ -27,7 +27,9 @@ struct SnapToFit {
     In<tactus::coupling::Scene> scene{"the fragments and all other bodies"};
     In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: its own frame", "m"};
     In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
-    In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
+    In<double> strength{
+        optional,
+        "share of the force that the hand feels, 0 to 1; unconnected: 1, and 0 from 0.1 s after 'holding' ended"};
     In<bool> engaged{optional, "pull the fragment; unconnected: true"};
     In<bool> settle{optional, "the springs to the hand yield to the pull, so that the hand adds no bias"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
@@ -64,7 +66,7 @@ struct SnapToFit {
     }
 
     void process(const Tick& tick) noexcept {
-        hold_.update(scene, held, holding, strength);
+        hold_.update(scene, held, holding, strength, tick.elapsed_seconds());
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{};
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/rotation.hpp"
+#include "dsp/coupling/coupling_spring.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/visual.hpp"
 
@@ -17,7 +18,8 @@ struct Spring {
     Out<Wrench> wrench{"on the device, about its origin; the object feels the opposite", "N, N m"};
     Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "force per distance between device and object"};
     Param damping{"0 N s/m", "0 N s/m", "50 N s/m", "force per relative velocity"};
-    Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad", "torque per angle between device and object"};
+    Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad",
+                            "torque per angle between device and object; it falls from 135° to nothing at 180°"};
     Param angular_damping{"0 N m s/rad", "0 N m s/rad", "1 N m s/rad", "torque per relative angular velocity"};
 
     std::vector<Visual> visuals() const {
@@ -27,7 +29,8 @@ struct Spring {
     void process(const Tick&) noexcept {
         const Vec3 velocity = object_twist->linear - device_twist->linear;
         const Vec3 spin = object_twist->angular - device_twist->angular;
-        const Vec3 angle = rotation_between(device->orientation, object->orientation);
+        const Vec3 angle =
+            tactus::coupling::TurnSpring::effective(rotation_between(device->orientation, object->orientation));
         wrench = {(object->position - device->position) * stiffness.value + velocity * damping.value,
                   angle * angular_stiffness.value + spin * angular_damping.value};
     }

@@ -246,7 +246,6 @@ private:
         const double share = strength.connected ? std::clamp(strength.get(), 0.0, 1.0) : 1.0;
         pull = pull * (gain.value * share);
         const double size = glm::length(pull.force);
-        if (!is_finite(pull)) return {};
         if (size > max_force) pull = pull * (max_force / size);
         greatest_felt_ = std::max(greatest_felt_, std::min(size, max_force.value));
         return pull;

@@ -3,6 +3,7 @@
 #include "graph/node/node.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -11,7 +12,9 @@ namespace tactus::nodes {
 struct Slew {
     static constexpr auto about =
         "Follows a value no faster than a limit: each component of a number, vector, twist or wrench, each sample of a "
-        "signal. It starts at 0; a value that is not finite is not followed.";
+        "signal. It starts at 0; a number or sample that is not finite is not followed. A vector, twist or wrench that "
+        "is "
+        "not finite is passed on: the fault of a force must be seen.";
     static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the value to follow", kinds::addable};
@@ -22,6 +25,7 @@ struct Slew {
     void prepare(const Setup& setup) {
         period_s_ = seconds(setup.period);
         sample_ = 0.0;
+        state_ = {};
         if (in.type != &value::signal) in.type->make_default(out.data);
     }
     void process(const Tick& tick) noexcept {
@@ -34,9 +38,11 @@ struct Slew {
             return;
         }
         const double dt = tick.elapsed_seconds();
-        for (std::size_t k = 0; k < in.type->columns.size(); ++k) {
-            double& y = out.as<double>()[k];
-            y = step(y, in.as<double>()[k], rise * dt, fall * dt);
+        const std::size_t count = in.type->columns.size();
+        for (std::size_t k = 0; k < count; ++k) {
+            const double x = in.as<double>()[k];
+            state_[k] = step(state_[k], x, rise * dt, fall * dt);
+            out.as<double>()[k] = count == 1 || std::isfinite(x) ? state_[k] : x;
         }
     }
 
@@ -46,6 +52,7 @@ private:
     }
 
     double period_s_ = 0.0, sample_ = 0.0;
+    std::array<double, 6> state_{};  // of the columns
 };
 
 TACTUS_NODE(Slew, in, out, rise, fall)

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 using namespace tactus;
 using test::NodeHarness;
@@ -265,4 +267,77 @@ TEST_CASE("a device of three degrees of freedom is given no torque and says so")
     CHECK(node.last<bool>("torque_dropped"));
     CHECK_FALSE(node.values<bool>("torque_dropped")[100]);
     CHECK(std::get<double>(node.report().sections.at("force").at("torque_dropped_max_Nm")) == Approx(0.2));
+}
+
+TEST_CASE("the torque of a spring has no jump at half a turn, and does no work on a full one") {
+    for (const char* type : {"spring", "hand_coupling"}) {
+        const bool is_spring = std::string_view(type) == "spring";
+        NodeHarness node(type, test::servo);
+        node.set("angular_stiffness", "2 N m/rad").disconnect_optional();
+        constexpr int steps = 3600;
+        const auto angle = [](std::int64_t k) { return 2.0 * M_PI * static_cast<double>(k) / steps; };
+        const Vec3 axis = glm::normalize(Vec3(1.0, -2.0, 0.5));
+        node.feed<Pose>(is_spring ? "device" : "a",
+                        [&](std::int64_t k) { return Pose{{}, rotation_by(angle(k) * axis)}; });
+        node.feed(is_spring ? "object" : "b", Pose{});
+        node.prepare();
+        node.run(steps + 1);
+        const auto torque = node.values<Wrench>(is_spring ? "wrench" : "on_a");
+        double jump = 0.0, work = 0.0, largest = 0.0;
+        for (std::size_t k = 1; k < torque.size(); ++k) {
+            jump = std::max(jump, glm::length(torque[k].torque - torque[k - 1].torque));
+            work += 0.5 * glm::dot(torque[k].torque + torque[k - 1].torque, axis) * angle(1);
+            largest = std::max(largest, glm::length(torque[k].torque));
+        }
+        CAPTURE(type, jump, work, largest);
+        CHECK(glm::length(torque[600].torque - axis * (-2.0 * angle(600))) < 1e-9);
+        CHECK(largest == Approx(1.5 * M_PI).epsilon(1e-3));
+        CHECK(jump < 3.01 * 2.0 * angle(1));
+        CHECK(std::abs(work) < 1e-6);
+    }
+}
+
+TEST_CASE("a force that is not finite passes every node that smooths forces, so that the hand's output sees it") {
+    for (const char* type : {"smooth", "slew", "force_shaping"}) {
+        const bool is_shaping = std::string_view(type) == "force_shaping";
+        NodeHarness node = is_shaping ? NodeHarness(type, test::servo)
+                                      : NodeHarness(type, {.period = test::servo.period, .any = &value::wrench});
+        if (std::string_view(type) == "slew") node.set("rise", "1e6 1/s").set("fall", "1e6 1/s");
+        node.feed<Wrench>("in", [](std::int64_t k) {
+            return Wrench{{0.0, 0.0, k == 100 ? std::numeric_limits<double>::quiet_NaN() : 3.0}, {}};
+        });
+        node.prepare();
+        node.run(102);
+        const auto out = node.values<Wrench>(is_shaping ? "wrench" : "out");
+        CAPTURE(type);
+        CHECK(out[99].force.z == Approx(3.0));
+        CHECK_FALSE(is_finite(out[100]));
+        // It goes on as before.
+        CHECK(out[101].force.z == Approx(3.0));
+    }
+}
+
+TEST_CASE("a body that is let go leaves no force on the hand, where nothing states the strength of its force") {
+    for (const char* type : {"quasi_static_coupling", "dynamic_coupling"}) {
+        NodeHarness node(type, test::servo);
+        node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
+        node.feed("scene", coupled_scene());
+        // Pressed on the table.
+        node.feed<Pose>("device", [](std::int64_t k) {
+            return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
+        });
+        node.feed<bool>("holding", [](std::int64_t k) { return k < 300; });
+        node.disconnect_optional().connect("holding");
+        node.prepare();
+        node.run(500);
+        const auto felt = node.values<Wrench>("wrench");
+        double step = 0.0;
+        for (std::size_t k = 300; k < felt.size(); ++k)
+            step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
+        CAPTURE(type);
+        CHECK(felt[299].force.z > 2.0);
+        CHECK(step < 0.02 * felt[299].force.z);
+        CHECK(glm::length(felt[401].force) == 0.0);
+        CHECK(glm::length(felt.back().force) == 0.0);
+    }
 }
