@@ -29,6 +29,25 @@ namespace tactus::report {
 file::Json schema_of_number();
 file::Json schema_of_texts();
 file::Json schema_of_list(file::Json items);
+/// The number of a field that is read in SI, in the unit of its format.
+Number in_unit(Number read, const NumberFormat& format);
+/// A list of numbers: of a band, a vector, a range of numbers or optional numbers, or an optional one of these.
+template <class List>
+std::optional<std::vector<std::optional<double>>> numbers_of(const List& list, double scale) {
+    if constexpr (requires { list.has_value(); }) {
+        if (!list) return std::nullopt;
+        return numbers_of(*list, scale);
+    } else if constexpr (requires { list.first; }) {
+        return std::vector<std::optional<double>>{scale * list.first, scale * list.second};
+    } else if constexpr (std::is_same_v<List, Vec3>) {
+        return std::vector<std::optional<double>>{scale * list.x, scale * list.y, scale * list.z};
+    } else {
+        std::vector<std::optional<double>> all;
+        for (const std::optional<double> value : list) all.push_back(value ? std::optional(scale * *value) : value);
+        return all;
+    }
+}
+
 /// `type`: "integer", "string", "boolean", "object"; null is allowed too.
 file::Json schema_or_null(file::Json schema);
 
@@ -42,7 +61,7 @@ public:
     template <class Read>
     Fields& number(std::string key, std::string name, NumberFormat format, Read read) {
         return add(std::move(key), std::move(name), schema_of_number, [read, format](const T& of) {
-            return typename ResultEntry::Quantity{Number(std::invoke(read, of)), format};
+            return ResultEntry::Quantity{in_unit(Number(std::invoke(read, of)), format), format};
         });
     }
     template <class Read>
@@ -61,7 +80,18 @@ public:
     Fields& range(std::string key, std::string name, NumberFormat format, Read read) {
         return add(
             std::move(key), std::move(name), [] { return schema_or_null(schema_of_list(schema_of_number())); },
-            [read, format](const T& of) { return ResultEntry::Range{std::invoke(read, of), format}; });
+            [read, format](const T& of) {
+                return ResultEntry::Numbers{numbers_of(std::invoke(read, of), format.per_si), format, " to "};
+            });
+    }
+    /// Numbers of one unit on one line, such as a place.
+    template <class Read>
+    Fields& vector(std::string key, std::string name, NumberFormat format, Read read) {
+        return add(
+            std::move(key), std::move(name), [] { return schema_or_null(schema_of_list(schema_of_number())); },
+            [read, format](const T& of) {
+                return ResultEntry::Numbers{numbers_of(std::invoke(read, of), format.per_si), format};
+            });
     }
     /// `read`: a text, or an optional one.
     template <class Read>
@@ -87,10 +117,24 @@ public:
         return add(std::move(key), std::move(name), schema_of_texts,
                    [read](const T& of) { return ResultEntry::Texts{std::invoke(read, of), true}; });
     }
+    /// Lists of names, of which each is printed on a line.
+    template <class Read>
+    Fields& groups(std::string key, std::string name, Read read) {
+        return add(
+            std::move(key), std::move(name), [] { return schema_of_list(schema_of_texts()); },
+            [read](const T& of) { return ResultEntry::Groups{std::invoke(read, of)}; });
+    }
+    /// A text of pages that explains the section, before its values.
+    template <class Read>
+    Fields& remark(Read read) {
+        return add(
+            "", "remark", [] { return file::Json(); },
+            [read](const T& of) { return ResultEntry::Remark{std::invoke(read, of)}; });
+    }
     /// Texts that are printed before all other values.
     template <class Read>
-    Fields& warnings(std::string key, Read read) {
-        texts(std::move(key), "warning", read);
+    Fields& warnings(std::string key, Read read, std::string name = "warning") {
+        texts(std::move(key), std::move(name), read);
         fields_.back().severity = [](const T&) { return Severity::warning; };
         return *this;
     }
@@ -113,6 +157,13 @@ public:
                 }}
                                : ResultEntry::Picture{};
             });
+    }
+    /// Pictures on pages. `make`: a vector of render::LabelledPicture of the struct, which must live until then.
+    template <class Make>
+    Fields& pictures(Make make) {
+        return add(
+            "", "pictures", [] { return file::Json(); },
+            [make](const T& of) { return ResultEntry::Pictures{[make, &of] { return std::invoke(make, of); }}; });
     }
     /// A table: `read` returns a range of U, of which each is a row.
     template <class U, class Read>
@@ -233,10 +284,16 @@ public:
         page_title_ = std::move(title);
         return *this;
     }
+    /// As a row of a page: the colour of a square before it.
+    Fields& marked(std::function<std::optional<Vec3>(const T&)> mark) {
+        mark_ = std::move(mark);
+        return *this;
+    }
     /// Views of the value live as long as it does.
     Result of(const T& value) const {
         if (other_ && is_other_(value)) return other_->of(value);
-        Result result{title_ ? title_(value) : std::string(), {}, page_title_ ? page_title_(value) : std::string()};
+        Result result{title_ ? title_(value) : std::string(), {}, page_title_ ? page_title_(value) : std::string(),
+                      mark_ ? mark_(value) : std::nullopt};
         for (const Field& field : fields_)
             result.entries.push_back({field.key, field.name, field.is_omitted,
                                       field.severity ? field.severity(value) : Severity::none, field.read(value),
@@ -293,6 +350,7 @@ private:
     std::vector<Field> fields_;
     std::function<std::string(const T&)> title_{}, page_title_{};
     std::function<bool(const T&)> is_other_{};
+    std::function<std::optional<Vec3>(const T&)> mark_{};
     const Fields<T>* other_ = nullptr;
 };
 

@@ -45,7 +45,7 @@ const Kind* as(const ResultEntry& entry) {
 
 bool is_scalar(const ResultEntry& entry) {
     return !as<ResultEntry::Rows>(entry) && !as<ResultEntry::Children>(entry) && !as<ResultEntry::Picture>(entry) &&
-           !as<ResultEntry::Series>(entry);
+           !as<ResultEntry::Series>(entry) && !as<ResultEntry::Pictures>(entry) && !as<ResultEntry::Remark>(entry);
 }
 
 /// A name and a value on one line, or, of texts that are apart, a line for each.
@@ -61,6 +61,11 @@ const ResultEntry::Texts* section_of_texts(const ResultEntry& entry) {
 
 std::vector<std::string> lines_of(const ResultEntry& entry) {
     const auto* texts = as<ResultEntry::Texts>(entry);
+    if (const auto* groups = as<ResultEntry::Groups>(entry)) {
+        std::vector<std::string> lines;
+        for (const auto& group : groups->groups) lines.push_back(fmt::format("{}", fmt::join(group, ", ")));
+        return lines;
+    }
     return texts && texts->is_apart ? texts->texts : std::vector{shown(entry)};
 }
 
@@ -73,7 +78,7 @@ std::vector<std::string> warnings_of(const ResultEntry& entry, Medium medium) {
 std::string_view unit_of(const ResultEntry& entry) {
     if (const auto* q = as<ResultEntry::Quantity>(entry))
         return q->number.unit.empty() ? q->format.unit : q->number.unit;
-    if (const auto* r = as<ResultEntry::Range>(entry)) return r->format.unit;
+    if (const auto* n = as<ResultEntry::Numbers>(entry)) return n->format.unit;
     return {};
 }
 
@@ -82,6 +87,7 @@ struct Cells {
     std::vector<std::string> head;
     std::vector<std::vector<std::string>> rows;
     std::vector<bool> are_numbers, warnings;
+    std::vector<Vec3> marks;
 };
 
 const ResultEntry* entry_of(const Result& row, const std::pair<std::string, std::string>& column) {
@@ -94,6 +100,8 @@ Cells cells_of(const ResultEntry::Rows& table) {
     Cells cells;
     cells.rows.resize(table.rows.size());
     cells.warnings.resize(table.rows.size());
+    for (const Result& row : table.rows)
+        if (row.mark) cells.marks.push_back(*row.mark);
     for (const auto& column : table.columns) {
         std::vector<const ResultEntry*> entries;
         bool is_number = false, is_used = false;
@@ -175,19 +183,25 @@ Json number_json(double value) { return std::isfinite(value) ? Json(value) : Jso
 Json value_json(const ResultEntry& entry) {
     return std::visit(
         Overload{[](const ResultEntry::Quantity& q) { return q.number.value ? number_json(*q.number.value) : Json(); },
-                 [](const ResultEntry::Range& r) {
-                     return r.ends ? Json::array({number_json(r.ends->first), number_json(r.ends->second)}) : Json();
+                 [](const ResultEntry::Numbers& n) {
+                     if (!n.values) return Json();
+                     Json list = Json::array();
+                     for (const auto& value : *n.values) list.push_back(value ? number_json(*value) : Json());
+                     return list;
                  },
                  [](const ResultEntry::Integer& i) { return i.value ? Json(*i.value) : Json(); },
                  [](const ResultEntry::Text& t) { return t.text ? Json(*t.text) : Json(); },
                  [](const ResultEntry::Flag& f) { return f.value ? Json(*f.value) : Json(); },
                  [](const ResultEntry::Texts& t) { return Json(t.texts); },
+                 [](const ResultEntry::Groups& g) { return Json(g.groups); },
+                 [](const ResultEntry::Remark&) { return Json(); },
                  [](const ResultEntry::Series& s) {
                      Json list = Json::array();
                      for (std::size_t n = 0; n < s.size; ++n) list.push_back(number_json(s.at(n)));
                      return list;
                  },
                  [](const ResultEntry::Picture&) { return Json(); },
+                 [](const ResultEntry::Pictures&) { return Json(); },
                  [](const ResultEntry::Rows& r) {
                      Json list = Json::array();
                      for (const Result& row : r.rows) list.push_back(json_of(row));
@@ -209,9 +223,14 @@ void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, 
     for (const ResultEntry& entry : result.entries)
         std::ranges::copy(warnings_of(entry, Medium::page), std::back_inserter(warnings.items));
     if (!warnings.items.empty()) out.emplace_back(std::move(warnings));
-    for (const ResultEntry& entry : result.entries)
+    for (const ResultEntry& entry : result.entries) {
+        const auto* remark = as<ResultEntry::Remark>(entry);
+        if (remark && !remark->text.empty()) out.emplace_back(Paragraph{remark->text});
         if (const auto* picture = as<ResultEntry::Picture>(entry); picture && picture->draw)
             out.emplace_back(Drawing{picture->draw(screen_style), entry.name});
+        if (const auto* pictures = as<ResultEntry::Pictures>(entry); pictures && pictures->make)
+            out.emplace_back(PictureGrid{pictures->make()});
+    }
     for (const ResultEntry& entry : result.entries)
         if (is_line(entry, Medium::page) && !section_of_texts(entry))
             for (std::string& line : lines_of(entry)) {
@@ -230,7 +249,8 @@ void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, 
         } else if (const auto* rows = as<ResultEntry::Rows>(entry)) {
             Cells cells = cells_of(*rows);
             head(entry.name);
-            out.emplace_back(ReportTable{std::move(cells.head), std::move(cells.rows), {}, std::move(cells.warnings)});
+            out.emplace_back(ReportTable{std::move(cells.head), std::move(cells.rows), std::move(cells.marks),
+                                         std::move(cells.warnings)});
         } else if (const auto* children = as<ResultEntry::Children>(entry)) {
             for (const Result& one : children->results) {
                 head(one.title.empty() ? entry.name : one.title);
@@ -325,6 +345,12 @@ std::string csv_table(const std::vector<std::string>& columns, const std::vector
             if (c + 1 == columns.size()) out += '\n';
         }
     return out;
+}
+
+Number in_unit(Number read, const NumberFormat& format) {
+    if (read.value) *read.value *= format.per_si;
+    if (read.uncertainty) *read.uncertainty *= format.per_si;
+    return read;
 }
 
 Json schema_of_number() { return {{"type", Json::array({"number", "null"})}}; }

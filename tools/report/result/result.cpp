@@ -80,6 +80,11 @@ NumberFormat fixed(int digits, std::string unit, std::string of) {
 NumberFormat significant(int digits, std::string unit, std::string of) {
     return format_of(NumberFormat::Notation::significant, digits, std::move(unit), std::move(of));
 }
+NumberFormat from_si(int digits, std::string unit) {
+    NumberFormat format = fixed(digits, std::move(unit));
+    format.per_si = 1.0 / parse_unit(format.unit).factor;
+    return format;
+}
 NumberFormat prefixed(int digits, std::string unit) {
     return {NumberFormat::Notation::prefixed, digits, std::move(unit)};
 }
@@ -103,11 +108,12 @@ void settle_pictures(Result& result, bool keeps_pictures, const FigureStyle& sty
 std::string shown(const ResultEntry& entry) {
     return std::visit(
         Overload{[](const ResultEntry::Quantity& q) { return shown_number(q.number, q.format); },
-                 [](const ResultEntry::Range& r) {
-                     return r.ends ? with_unit(digits_of(r.ends->first, r.format) + " to " +
-                                                   digits_of(r.ends->second, r.format),
-                                               r.format.unit)
-                                   : std::string(dash);
+                 [](const ResultEntry::Numbers& n) {
+                     if (!n.values) return std::string(dash);
+                     std::vector<std::string> all;
+                     for (const auto& value : *n.values)
+                         all.push_back(value ? digits_of(*value, n.format) : std::string(dash));
+                     return with_unit(fmt::format("{}", fmt::join(all, n.between)), n.format.unit);
                  },
                  [](const ResultEntry::Integer& i) { return i.value ? std::to_string(*i.value) : std::string(dash); },
                  [](const ResultEntry::Text& t) { return t.text && !t.text->empty() ? *t.text : std::string(dash); },
@@ -116,6 +122,11 @@ std::string shown(const ResultEntry& entry) {
                  },
                  [](const ResultEntry::Texts& t) {
                      return t.texts.empty() ? std::string(dash) : fmt::format("{}", fmt::join(t.texts, ", "));
+                 },
+                 [](const ResultEntry::Groups& g) {
+                     std::vector<std::string> lines;
+                     for (const auto& group : g.groups) lines.push_back(fmt::format("{}", fmt::join(group, ", ")));
+                     return lines.empty() ? std::string(dash) : fmt::format("{}", fmt::join(lines, "; "));
                  },
                  [](const auto&) { return std::string(); }},
         entry.value);
@@ -127,19 +138,22 @@ std::string_view unit_of_value(const ResultEntry& entry) {
     };
     if (const auto* q = std::get_if<ResultEntry::Quantity>(&entry.value))
         return q->number.unit.empty() ? of_format(q->format) : q->number.unit;
-    if (const auto* r = std::get_if<ResultEntry::Range>(&entry.value)) return of_format(r->format);
+    if (const auto* n = std::get_if<ResultEntry::Numbers>(&entry.value)) return of_format(n->format);
     return {};
 }
 
 bool is_missing(const ResultEntry& entry) {
     return std::visit(Overload{[](const ResultEntry::Quantity& q) { return !q.number.value; },
-                               [](const ResultEntry::Range& r) { return !r.ends; },
+                               [](const ResultEntry::Numbers& n) { return !n.values; },
                                [](const ResultEntry::Integer& i) { return !i.value; },
                                [](const ResultEntry::Text& t) { return !t.text || t.text->empty(); },
                                [](const ResultEntry::Flag& f) { return !f.value; },
                                [](const ResultEntry::Texts& t) { return t.texts.empty(); },
+                               [](const ResultEntry::Groups& g) { return g.groups.empty(); },
+                               [](const ResultEntry::Remark& r) { return r.text.empty(); },
                                [](const ResultEntry::Series& s) { return s.size == 0; },
                                [](const ResultEntry::Picture& p) { return !p.draw; },
+                               [](const ResultEntry::Pictures& p) { return !p.make; },
                                [](const ResultEntry::Rows& r) { return r.rows.empty(); },
                                [](const ResultEntry::Children& c) { return c.results.empty(); }},
                       entry.value);

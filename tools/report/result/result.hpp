@@ -3,6 +3,7 @@
 #pragma once
 
 #include "devices/display/figure.hpp"
+#include "tools/render/labelled_picture.hpp"
 #include "tools/report/figures/figure_style.hpp"
 
 #include <functional>
@@ -27,6 +28,7 @@ struct NumberFormat {
     std::string unit{};  ///< shown after the number; empty: none, or that of the value
     std::string of{};  ///< unit of the value; empty: the shown one
     double scale = 1.0;  ///< shown number per value
+    double per_si = 1.0;  ///< value per number that a field reads
     bool is_signed = false;  ///< "+1.2"
 
     /// Positive numbers have a sign: gains and differences.
@@ -38,6 +40,8 @@ struct NumberFormat {
 NumberFormat fixed(int digits, std::string unit = "", std::string of = "");
 /// `digits` significant digits.
 NumberFormat significant(int digits, std::string unit = "", std::string of = "");
+/// `digits` decimals in `unit` of a field that is in SI: JSON has the shown unit, too, as in `length_mm`.
+NumberFormat from_si(int digits, std::string unit);
 /// `digits` significant digits, and a prefix of the unit.
 NumberFormat prefixed(int digits, std::string unit = "");
 
@@ -75,9 +79,11 @@ struct ResultEntry {
         Number number;
         NumberFormat format;
     };
-    struct Range {
-        std::optional<std::pair<double, double>> ends;
+    /// A band, a place, a pose: numbers of one unit on one line.
+    struct Numbers {
+        std::optional<std::vector<std::optional<double>>> values;
         NumberFormat format;
+        std::string between = " ";
     };
     struct Integer {
         std::optional<long long> value;
@@ -92,6 +98,14 @@ struct ResultEntry {
         std::vector<std::string> texts;
         bool is_apart = false;  ///< a line for each; otherwise one line with commas
     };
+    /// A line of names for each group.
+    struct Groups {
+        std::vector<std::vector<std::string>> groups;
+    };
+    /// A paragraph of pages that explains a section; not a value.
+    struct Remark {
+        std::string text;
+    };
     /// A view of values that live as long as what was analysed; JSON contains all of them, no printed format does.
     struct Series {
         std::size_t size = 0;
@@ -100,6 +114,10 @@ struct ResultEntry {
     /// Drawn when a format shows it.
     struct Picture {
         std::function<display::Figure(const FigureStyle&)> draw;
+    };
+    /// Rendered pictures, made when a page shows them.
+    struct Pictures {
+        std::function<std::vector<render::LabelledPicture>()> make;
     };
     struct Rows {
         std::vector<Result> rows;
@@ -114,7 +132,9 @@ struct ResultEntry {
     std::string key, name;
     bool is_omitted = false;  ///< in JSON a value that is missing is left out, not null
     Severity severity = Severity::none;
-    std::variant<Quantity, Range, Integer, Text, Flag, Texts, Series, Picture, Rows, Children> value;
+    std::variant<Quantity, Numbers, Integer, Text, Flag, Texts, Groups, Remark, Series, Picture, Pictures, Rows,
+                 Children>
+        value;
     Where where = Where::everywhere;
 };
 
@@ -122,6 +142,7 @@ struct Result {
     std::string title;
     std::vector<ResultEntry> entries;
     std::string page_title{};  ///< in place of `title` on pages
+    std::optional<Vec3> mark{};  ///< sRGB of a square before it, as a row of a page
 
     const ResultEntry* find(std::string_view key) const;
 };
