@@ -2,7 +2,7 @@
 #include "tools/command/batch.hpp"
 
 #include "tools/analysis/workers.hpp"
-#include "tools/terminal.hpp"
+#include "tools/progress.hpp"
 
 #include <fmt/format.h>
 
@@ -13,21 +13,18 @@
 
 namespace tactus::command {
 
-std::string progress_bar(std::size_t finished, std::size_t count, std::string_view what) {
-    constexpr std::size_t width = 30;
-    const std::size_t filled = count == 0 ? width : width * finished / count;
-    return fmt::format("[{}{}] {} of {} {}", std::string(filled, '#'), std::string(width - filled, ' '), finished,
-                       count, what);
-}
-
-std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view what, const BatchJob& job) {
+std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view what, const BatchJob& job,
+                                   bool is_quiet) {
     std::vector<std::string> failures(count);
     std::size_t finished = 0;
     std::mutex telling;
-    LiveLine line;
+    Progress shown(is_quiet);
     const auto tell = [&](double share) {
         const std::lock_guard lock(telling);
-        line.show(count == 1 ? fmt::format("{:3.0f} %", 100.0 * share) : progress_bar(finished, count, what));
+        if (count == 1) shown.show(share);
+        else
+            shown.show(static_cast<double>(finished) / static_cast<double>(count),
+                       fmt::format("{} of {} {}", finished, count, what));
     };
     analysis::on_threads(jobs)(static_cast<int>(count), [&](int n) {
         const auto index = static_cast<std::size_t>(n);
@@ -47,7 +44,7 @@ std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view
         }
         tell(1.0);
     });
-    line.clear();
+    shown.clear();
     return failures;
 }
 

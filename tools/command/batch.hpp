@@ -16,13 +16,12 @@ namespace tactus::command {
 using BatchJob = std::function<void(std::size_t index, const std::function<void(double share)>& progress)>;
 
 /// Runs job(0) … job(count − 1), `jobs` at a time (0: one per core). Returns the error of each item, empty for success.
-std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view what, const BatchJob& job);
+/// `is_quiet`: without progress.
+std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view what, const BatchJob& job,
+                                   bool is_quiet = false);
 
 /// Prints the errors on standard error. Returns their number.
 std::size_t tell_failures(const std::vector<std::string>& failures);
-
-/// "[####    ] 3 of 8 files"
-std::string progress_bar(std::size_t finished, std::size_t count, std::string_view what);
 
 using table::csv_field;
 

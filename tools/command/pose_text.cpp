@@ -21,22 +21,4 @@ Pose pose_of_text(const std::string& text, std::string_view option) {
     return {pose.position, glm::normalize(pose.orientation)};
 }
 
-bool has_bound(fit::FitVerdict verdict) {
-    return verdict == fit::FitVerdict::fit || verdict == fit::FitVerdict::uncertain;
-}
-
-std::string bound_words(fit::FitVerdict verdict, const fit::PoseBound& bound) {
-    return fmt::format(
-        "{}: its place is known to ±{:.2f}°, ±{:.2f} mm at the face and ±{:.2f} mm at the far end (95 %){}",
-        fit::answer_of(verdict), bound.turn * 180.0 / std::numbers::pi, bound.face * 1e3, bound.far * 1e3,
-        bound.has_rival ? "; another pose that fits less well is within that" : "");
-}
-
-std::string left_out_words(std::string_view name, double area) {
-    return fmt::format(
-        "{}: {:.0f} mm² touch another fragment in the scan; they are left out of fits, as they show where it was "
-        "scanned",
-        name, area * 1e6);
-}
-
 }  // namespace tactus::command

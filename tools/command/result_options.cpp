@@ -32,7 +32,7 @@ const report::ResultEntry::Picture* first_picture(const report::Result& result) 
 
 void write_file(const report::Result& result, const std::filesystem::path& out, const ResultChoice& choice) {
     const std::string ending = out.extension().string();
-    if (ending == choice.product.ending) return;
+    if (choice.product.has(out)) return;
     if (ending == ".txt") file::write_whole_file(out, report::text_of(result));
     else if (ending == ".json") file::write_whole_file(out, report::output_json(result).dump(2) + "\n");
     else if (ending == ".csv") file::write_whole_file(out, report::csv_of(result));
@@ -52,7 +52,7 @@ void write_file(const report::Result& result, const std::filesystem::path& out, 
 std::string endings_of(const ResultChoice& choice) {
     std::vector<std::string> all;
     for (const char* ending : texts)
-        if (ending != choice.product.ending) all.emplace_back(ending);
+        if (!choice.product.has(std::string("x") + ending)) all.emplace_back(ending);
     const std::string last = all.back();
     all.pop_back();
     return fmt::format("{} or {}", fmt::join(all, ", "), last);
@@ -66,7 +66,8 @@ Option add_result_options(VerbOptions& verb, ResultChoice& choice, ResultFigure 
     const bool has_figure = figure != ResultFigure::none;
     std::string about = fmt::format("file for the result, by its ending: {}", endings_of(choice));
     if (has_figure) about += ", or .svg or .png of its figure";
-    if (!choice.product.ending.empty()) about += fmt::format("; {}: {}", choice.product.ending, choice.product.about);
+    if (!choice.product.endings.empty())
+        about += fmt::format("; {}: {}", fmt::join(choice.product.endings, ", "), choice.product.about);
     const Option out = verb.add("-o,--out", choice.out, about + "; repeatable").one_each();
     verb.flag("--json", choice.json, "as JSON");
     verb.flag("--quiet", choice.quiet, "print no result, only errors; for -o");
@@ -76,10 +77,15 @@ Option add_result_options(VerbOptions& verb, ResultChoice& choice, ResultFigure 
     return out;
 }
 
+bool Product::has(const std::filesystem::path& file) const {
+    return std::ranges::any_of(endings,
+                               [&](const std::string& ending) { return file.filename().string().ends_with(ending); });
+}
+
 std::vector<std::filesystem::path> ResultChoice::products() const {
     std::vector<std::filesystem::path> all;
     for (const std::filesystem::path& path : out)
-        if (path.extension() == product.ending) all.push_back(path);
+        if (product.has(path)) all.push_back(path);
     return all;
 }
 
@@ -98,7 +104,7 @@ void check_result_files(const ResultChoice& choice) {
     for (const std::filesystem::path& out : choice.out) {
         const std::string ending = out.extension().string();
         const bool is_image = ending == ".svg" || ending == ".png";
-        if (ending == choice.product.ending && !ending.empty()) continue;
+        if (choice.product.has(out)) continue;
         if (is_image && !has_figure)
             throw Error(fmt::format("{}: this result has no figure; write it as {}", out.string(), endings_of(choice)));
         if (!is_image && std::ranges::find(texts, ending) == texts.end())
@@ -107,8 +113,12 @@ void check_result_files(const ResultChoice& choice) {
     }
 }
 
-void write_result(const report::Result& result, const ResultChoice& choice) {
+void write_files(const report::Result& result, const ResultChoice& choice) {
     for (const std::filesystem::path& out : choice.out) write_file(result, out, choice);
+}
+
+void write_result(const report::Result& result, const ResultChoice& choice) {
+    write_files(result, choice);
     if (choice.quiet) return;
     say(stdout, choice.json ? report::output_json(result).dump(2) + "\n" : report::text_of(result));
 }

@@ -14,8 +14,10 @@ namespace tactus::command {
 
 /// A file that a verb makes besides its result: a measured response, a filter.
 struct Product {
-    std::string ending;  ///< ".toml"; empty: the verb makes none
+    std::vector<std::string> endings;  ///< {".toml"}; empty: the verb makes none
     std::string about;  ///< "the filter"
+
+    bool has(const std::filesystem::path& file) const;
 };
 
 enum class ResultFigure { none, some, styled };  ///< styled: in all styles
@@ -41,6 +43,9 @@ bool is_result_file(const std::filesystem::path& path);
 
 /// Throws Error for a file whose ending no format has, and for a figure if there is none; call before the analysis.
 void check_result_files(const ResultChoice& choice);
+
+/// Writes the files but the product. Throws Error if one cannot be written.
+void write_files(const report::Result& result, const ResultChoice& choice);
 
 /// Writes the files but the product; then prints the result, unless quiet. Throws Error if a file cannot be written.
 void write_result(const report::Result& result, const ResultChoice& choice);

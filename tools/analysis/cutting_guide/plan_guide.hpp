@@ -2,7 +2,6 @@
 // Guides for the cuts of a reconstruction: what is made of a plan, what is checked, and what is refused.
 #pragma once
 
-#include "assets/file/json.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/cutting_guide/guide.hpp"
 #include "dsp/cutting_guide/guide_checks.hpp"
@@ -62,8 +61,5 @@ void refuse_guide(const PlannedGuide& guide);
 
 /// Both. Clinical thresholds only warn.
 PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
-
-/// {closed, parts, triangles, wall_min_mm, seating, slots, play_deg, seat_play, contact_share, warnings, ...}
-file::Json guide_json(const PlannedGuide& guide);
 
 }  // namespace tactus::analysis

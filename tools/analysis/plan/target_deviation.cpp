@@ -13,7 +13,6 @@
 
 namespace tactus::analysis {
 
-using file::Json;
 using reconstruction::SegmentDeviation;
 
 namespace {
@@ -47,22 +46,6 @@ std::string deviation_words(const NamedDeviation& one) {
         text += fmt::format("; contour {:.1f} mm rms, {:+.1f} to {:+.1f} mm beyond the target's", contour->rms / mm,
                             contour->lowest / mm, contour->highest / mm);
     return text;
-}
-
-Json deviation_json(const std::vector<NamedDeviation>& all) {
-    Json list = Json::array();
-    for (const auto& [segment, deviation] : all) {
-        Json one{{"segment", segment}, {"curve_mm", nullptr}, {"contour_mm", nullptr}};
-        if (const auto& curve = deviation.curve)
-            one["curve_mm"] = {{"rms", curve->rms / mm}, {"greatest", curve->greatest / mm}};
-        if (const auto& contour = deviation.contour)
-            one["contour_mm"] = {{"rms", contour->rms / mm},
-                                 {"lowest", contour->lowest / mm},
-                                 {"highest", contour->highest / mm},
-                                 {"share", contour->share}};
-        list.push_back(one);
-    }
-    return list;
 }
 
 }  // namespace tactus::analysis

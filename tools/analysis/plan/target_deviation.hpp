@@ -2,7 +2,6 @@
 // Deviation of a reconstruction from the target of its plan (`plan mirror`).
 #pragma once
 
-#include "assets/file/json.hpp"
 #include "assets/plan/case_plan.hpp"
 #include "dsp/reconstruction/target_deviation.hpp"
 
@@ -23,6 +22,5 @@ std::vector<NamedDeviation> deviation_from_target(const plan::CasePlan& plan, co
 
 /// One line, mm: "segment-1: curve 1.2 mm rms from the target's, ...".
 std::string deviation_words(const NamedDeviation& one);
-file::Json deviation_json(const std::vector<NamedDeviation>& all);
 
 }  // namespace tactus::analysis

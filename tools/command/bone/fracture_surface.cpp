@@ -6,8 +6,8 @@
 #include "dsp/core/error.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/command/options.hpp"
-#include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/report/bone/pose_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -74,7 +74,8 @@ void print(const FractureSurfaceChoice& choice, const analysis::FractureSurface&
         fmt::print("{:.0f} mm² about {:.1f} {:.1f} {:.1f} mm, looking along {:.2f} {:.2f} {:.2f}\n", f.area * 1e6, p.x,
                    p.y, p.z, f.normal.x, f.normal.y, f.normal.z);
     }
-    if (found.as_scanned > 0.0) fmt::print("{}\n", left_out_words(choice.settings.bone.string(), found.as_scanned));
+    if (found.as_scanned > 0.0)
+        fmt::print("{}\n", report::left_out_words(choice.settings.bone.string(), found.as_scanned));
     if (faces.empty()) fmt::print("no fracture surface found; paint it by hand, or lower --roughness\n");
 }
 

@@ -14,8 +14,11 @@
 #include "tools/command/bone/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/report/bone/scan_result.hpp"
+#include "tools/report/result/printers.hpp"
 #include "tools/run/patch_choice.hpp"
 #include "tools/run/stop_signals.hpp"
+#include "tools/terminal.hpp"
 #include "tools/window/paint/paint_view.hpp"
 
 #include <fmt/format.h>
@@ -37,11 +40,6 @@ struct SegmentChoice {
     double marrow = 2.0;  // mm
     bool json = false;
 };
-
-Json place_json(const Vec3& m) {
-    const Vec3 p = m * 1e3;
-    return Json::array({p.x, p.y, p.z});
-}
 
 bool is_bones(const std::filesystem::path& path) { return path.extension() == ".vdb"; }
 
@@ -85,78 +83,6 @@ void check_outputs(const SegmentChoice& choice) {
     all.push_back(choice.paint.seeds);
     const std::filesystem::path sources[] = {choice.settings.scan, choice.seeds};
     file::check_outputs(sources, all);
-}
-
-Json json_of(const analysis::ScanGraph& scan, const analysis::SegmentedScan& found, const SegmentChoice& choice) {
-    Json json = Json::object();
-    Json labels = Json::array(), islands = Json::array(), uncertain = Json::array(), touching = Json::array();
-    for (const analysis::SegmentedLabel& l : found.labels)
-        labels.push_back({{"name", l.name}, {"voxels", l.voxels}, {"volume_mm3", l.volume * 1e9}});
-    for (const analysis::UnseededIsland& i : found.islands)
-        islands.push_back({{"voxels", i.voxels}, {"centre_mm", place_json(i.centre)}});
-    for (const analysis::UncertainPlace& u : found.uncertain)
-        uncertain.push_back({{"voxels", u.voxels}, {"deepest_mm", place_json(u.deepest)}});
-    for (const analysis::TouchingFace& t : found.touching)
-        touching.push_back({{"labels", Json::array({t.a, t.b})}, {"area_mm2", t.area * 1e6}, {"as_scanned", true}});
-    Json out = Json::array();
-    for (const auto& path : choice.out) out.push_back(path.string());
-    json["files"] = out;
-    json["labels"] = labels;
-    json["unseeded_islands"] = islands;
-    json["uncertain"] = uncertain;
-    json["touching"] = touching;
-    json["marrow_voxels"] = found.marrow_voxels;
-    json["metal_voxels"] = scan.metal_voxels;
-    json["threshold"] = {{"value", scan.threshold}, {"from", scan.threshold_from}};
-    json["gap_law"] = {{"bright", found.law.bright}, {"width", found.law.width}};
-    json["residual"] = found.residual;
-    json["iterations"] = found.iterations;
-    json["seconds"] = found.seconds;
-    json["certainty_p05"] = found.certainty_p05;
-    json["notes"] = scan.notes;
-    return json;
-}
-
-constexpr std::size_t shown = 3;  // of a list; JSON has all
-
-void print_touching(const std::vector<analysis::TouchingFace>& touching) {
-    for (std::size_t n = 0; n < std::min(shown, touching.size()); ++n)
-        fmt::print("  {} and {} touch over {:.0f} mm²\n", touching[n].a, touching[n].b, touching[n].area * 1e6);
-    if (touching.size() > shown) fmt::print("  {} more pairs touch\n", touching.size() - shown);
-    if (!touching.empty())
-        fmt::print("  where fragments touch in the scan their faces are as scanned, and do not show where they fit\n");
-}
-
-void print_islands(const std::vector<analysis::UnseededIsland>& islands) {
-    std::size_t rest = 0;
-    for (std::size_t n = 0; n < islands.size(); ++n) {
-        const Vec3 p = islands[n].centre * 1e3;
-        if (n < shown)
-            fmt::print("  no seed in an island of {} voxels about {:.1f} {:.1f} {:.1f} mm\n", islands[n].voxels, p.x,
-                       p.y, p.z);
-        else rest += islands[n].voxels;
-    }
-    if (rest > 0) fmt::print("  no seed in {} more islands, {} voxels in all\n", islands.size() - shown, rest);
-}
-
-void print(const analysis::ScanGraph& scan, const analysis::SegmentedScan& found) {
-    const bool is_hu = scan.hu != volume::HuKind::scanner;
-    fmt::print("bone from {:g}{} ({}), {} voxels\n", scan.threshold, is_hu ? " HU" : "", scan.threshold_from,
-               scan.graph.nodes());
-    for (const analysis::SegmentedLabel& l : found.labels)
-        fmt::print("  {:<20} {:>9} voxels  {:>9.1f} mm³\n", l.name, l.voxels, l.volume * 1e9);
-    print_touching(found.touching);
-    print_islands(found.islands);
-    if (!found.uncertain.empty()) {
-        const Vec3 p = found.uncertain.front().deepest * 1e3;
-        fmt::print("  least certain at {:.1f} {:.1f} {:.1f} mm ({} voxels below 0.4): paint there first\n", p.x, p.y,
-                   p.z, found.uncertain.front().voxels);
-    }
-    for (const std::string& note : scan.notes) fmt::print("  {}\n", note);
-    fmt::print(
-        "residual {:.1e} after {} iterations, {:.2f} s of processor time; 95 % of the voxels are more certain than "
-        "{:.2f}\n",
-        found.residual, found.iterations, found.seconds, found.certainty_p05);
 }
 
 /// The labels that had strokes when the window was closed.
@@ -212,8 +138,10 @@ int segment_bone(const SegmentChoice& given) {
             if (is_bones(path)) analysis::write_plan_of(path, found, choice.plan);
     if (!choice.certainty.empty())
         volume::write_volume(found.certainty, volume::WrittenType::float32, choice.certainty);
-    if (choice.json) fmt::print("{}\n", json_of(scan, found, choice).dump(2));
-    else print(scan, found);
+    std::vector<std::string> files;
+    for (const auto& path : choice.out) files.push_back(path.string());
+    const report::Result result = report::segmentation_fields().of({&scan, &found, files});
+    say(stdout, choice.json ? report::output_json(result).dump(2) + "\n" : report::text_of(result));
     return done;
 }
 
@@ -261,7 +189,10 @@ Action declare_segment(VerbOptions& verb) {
 }  // namespace
 
 Verb segment_verb() {
-    return {"segment", "separate the fragments of a CT by random walks from painted seeds", declare_segment};
+    return {.name = "segment",
+            .about = "separate the fragments of a CT by random walks from painted seeds",
+            .add = declare_segment,
+            .schema = [] { return report::schema_of_output({report::segmentation_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

@@ -6,16 +6,16 @@
 #include "dsp/core/error.hpp"
 #include "tools/analysis/bone/snapping.hpp"
 #include "tools/command/old_words.hpp"
-#include "tools/command/options.hpp"
 #include "tools/command/pose_text.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/report/bone/fit_result.hpp"
+#include "tools/report/result/printers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
-#include <numbers>
-#include <utility>
 
 namespace tactus::command {
 
@@ -26,7 +26,7 @@ using file::Json;
 struct SnapChoice {
     analysis::SnapSettings settings;
     std::string paint = "auto", start, mode = "extended";
-    bool json = false;
+    ResultChoice result;
 };
 
 /// Of one side: {"moving": [[x, y, z], ...], "fixed": [...], "radius_mm": r}, in mm.
@@ -60,71 +60,14 @@ analysis::SnapSettings settings_of(const SnapChoice& choice) {
     return settings;
 }
 
-Json painted_mm2(const analysis::SnappedSide& side) {
-    Json areas = Json::array();
-    for (const double area : side.areas) areas.push_back(area * 1e6);
-    return areas;
-}
-
-Json json_of(const fit::Fit& fit) {
-    Json free = Json::array();
-    for (const fit::FreeDirection& f : fit.free)
-        free.push_back(
-            {{"type", f.is_rotation ? "rotation" : "translation"}, {"axis", {f.axis.x, f.axis.y, f.axis.z}}});
-    return {{"pose", pose_json<Json>(fit.pose)},
-            {"score", fit.quality.score},
-            {"margin", fit.margin},
-            {"held_at_far_end_mm", fit.precision.far * 1e3},
-            {"held_deg", fit.precision.turn * 180.0 / std::numbers::pi},
-            {"overlap_mm2", fit.quality.overlap * 1e6},
-            {"rms_mm", fit.quality.rms * 1e3},
-            {"gap_mm", fit.quality.gap * 1e3},
-            {"penetration_mm", fit.quality.penetration * 1e3},
-            {"outline_step_mm", fit.quality.outline * 1e3},
-            {"free_directions", free},
-            {"verdict", fit::name_of(fit.verdict)},
-            {"answer", fit::answer_of(fit.verdict)},
-            {"bound", bound_json<Json>(fit.bound)}};
-}
-
-Json json_of(const analysis::Snapped& found) {
-    Json json = json_of(found.fit);
-    json["moved"] = motion_json<Json>(found.moved);
-    json["as_scanned"] = found.as_scanned;
-    json["time_ms"] = 1e3 * found.seconds;
-    json["iterations"] = found.fit.iterations;
-    json["paint"] = {{"moving", found.moving.paint}, {"fixed", found.fixed.paint}};
-    json["as_scanned_mm2"] = {{"moving", 1e6 * found.moving.as_scanned}, {"fixed", 1e6 * found.fixed.as_scanned}};
-    json["painted_mm2"] = {{"moving", painted_mm2(found.moving)}, {"fixed", painted_mm2(found.fixed)}};
-    return json;
-}
-
-void print(const SnapChoice& choice, const analysis::Snapped& found) {
-    const fit::Fit& fit = found.fit;
-    const Vec3 p = fit.pose.position * 1e3;
-    const Quat q = fit.pose.orientation;
-    fmt::print("{}: score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms, {:.0f} ms\n",
-               fit::name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6,
-               fit.quality.rms * 1e3, 1e3 * found.seconds);
-    fmt::print("p_fixed = R p_moving + t: t = {:.3f} {:.3f} {:.3f} mm, q = {:.5f} {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
-               p.z, q.w, q.x, q.y, q.z);
-    if (has_bound(fit.verdict)) fmt::print("{}\n", bound_words(fit.verdict, fit.bound));
-    for (const fit::FreeDirection& f : fit.free)
-        fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_rotation ? "turn about" : "slide along", f.axis.x,
-                   f.axis.y, f.axis.z);
-    if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
-    const analysis::SnapSettings& files = choice.settings;
-    for (const auto& [side, file] : {std::pair(&found.moving, &files.moving), {&found.fixed, &files.fixed}})
-        if (side->as_scanned > 0.0) fmt::print("{}\n", left_out_words(file->string(), side->as_scanned));
-}
-
 int snap(const SnapChoice& choice) {
+    check_result_files(choice.result);
     if (bone::name_one_bone(choice.settings.moving, choice.settings.fixed))
         throw Error(fmt::format("{}: a fragment cannot be fitted to itself; name two fragments",
                                 choice.settings.moving.string()));
     const analysis::Snapped found = analysis::snap_files(settings_of(choice));
-    if (choice.json) fmt::print("{}\n", json_of(found).dump(2));
-    else print(choice, found);
+    write_result(report::snap_fields().of({choice.settings.moving.string(), choice.settings.fixed.string(), &found}),
+                 choice.result);
     return found.fit.verdict == fit::FitVerdict::fit ? done : answer_is_no;
 }
 
@@ -141,13 +84,18 @@ Action declare_snap(VerbOptions& verb) {
     verb.add("--mode", choice->mode, "extended and baseline (Olsson 2015) start from there, global from anywhere")
         .one_of({"extended", "global", "baseline"})
         .shows_default();
-    verb.flag("--json", choice->json, "as JSON");
+    add_result_options(verb, choice->result, ResultFigure::none);
     verb.old([](std::vector<std::string>& words) { rename_value(words, "--mode", "thesis", "baseline"); });
     return [choice] { return snap(*choice); };
 }
 
 }  // namespace
 
-Verb snap_verb() { return {"snap", "fit a fragment to another one, with a verdict", declare_snap}; }
+Verb snap_verb() {
+    return {
+        .name = "snap", .about = "fit a fragment to another one, with a verdict", .add = declare_snap, .schema = [] {
+            return report::schema_of_output({report::snap_fields().schema()});
+        }};
+}
 
 }  // namespace tactus::command

@@ -8,6 +8,7 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/progress.hpp"
 #include "tools/report/figures/rig_figures.hpp"
 #include "tools/report/gripper/rig_result.hpp"
 #include "tools/report/result/printers.hpp"
@@ -32,17 +33,17 @@ struct RigChoice {
 };
 
 analysis::RigReport simulate(const RigChoice& choice, const analysis::RigMatrix& matrix) {
-    LiveLine line;
+    Progress shown(choice.quiet);
     std::string series;
     const auto keep = [&](const analysis::RigCell& cell, const control::RigSeries& measured) {
         if (choice.keep_series) series += analysis::rig_series_csv(cell, measured, series.empty());
     };
     const auto progress = [&](int done_cells, int of) {
-        line.show(progress_bar(static_cast<std::size_t>(done_cells), static_cast<std::size_t>(of), "cells"));
+        shown.show(static_cast<double>(done_cells) / of, fmt::format("{} of {} cells", done_cells, of));
     };
     analysis::RigReport report =
         analysis::study_rig(choice.patch, matrix, analysis::on_threads(choice.threads), progress, keep);
-    line.clear();
+    shown.clear();
     if (choice.keep_series) file::write_whole_file(choice.out / "series.csv", series);
     report.title = "Test rig: " + choice.patch.patch;
     report.source =

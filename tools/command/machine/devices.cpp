@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/file/json.hpp"
-#include "devices/audio/portaudio.hpp"
-#include "devices/haptic/catalogue.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/machine/look_at_device.hpp"
 #include "tools/command/options.hpp"
-#include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
-
-#include <fmt/format.h>
+#include "tools/report/machine/machine_result.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/terminal.hpp"
 
 #include <memory>
 #include <string>
@@ -18,38 +15,16 @@ namespace tactus::command {
 namespace {
 
 int devices(bool json) {
-    file::Json list{{"haptic", file::Json::array()}, {"audio", file::Json::array()}};
-    for (const haptic::HapticDriver& driver : haptic::haptic_drivers())
-        list["haptic"].push_back({{"driver", driver.name},
-                                  {"about", driver.summary},
-                                  {"real", driver.is_real},
-                                  {"untested_on_hardware", driver.is_untested}});
-    std::string no_sound = "none";
+    report::FoundDevices found;
+    for (const haptic::HapticDriver& driver : haptic::haptic_drivers()) found.haptic.push_back(driver);
+    found.no_sound = "none";
     try {
-        for (const audio::AudioCard& card : audio::list_audio_cards())
-            list["audio"].push_back({{"name", card.name},
-                                     {"channels", card.outputs},
-                                     {"inputs", card.inputs},
-                                     {"rate_hz", card.rate},
-                                     {"latency_ms", 1e3 * card.latency},
-                                     {"default", card.is_default}});
+        for (const audio::AudioCard& card : audio::list_audio_cards()) found.audio.push_back(card);
     } catch (const Error& error) {
-        no_sound = error.what();
+        found.no_sound = error.what();
     }
-    if (json) {
-        fmt::print("{}\n", list.dump(2));
-        return done;
-    }
-    fmt::print("haptic drivers\n");
-    for (const auto& driver : list["haptic"])
-        fmt::print("  {:<16} {}{}\n", driver["driver"].get<std::string>(), driver["about"].get<std::string>(),
-                   driver["untested_on_hardware"].get<bool>() ? " (untested on hardware)" : "");
-    fmt::print("sound cards{}\n", list["audio"].empty() ? ": " + no_sound : "");
-    for (const auto& card : list["audio"])
-        fmt::print("  {} ({}, {}, {:.0f} Hz, {:.1f} ms{})\n", card["name"].get<std::string>(),
-                   counted(card["channels"].get<int>(), "output"), counted(card["inputs"].get<int>(), "input"),
-                   card["rate_hz"].get<double>(), card["latency_ms"].get<double>(),
-                   card["default"].get<bool>() ? ", default" : "");
+    const report::Result result = report::devices_fields().of(found);
+    say(stdout, json ? report::output_json(result).dump(2) + "\n" : report::text_of(result));
     return done;
 }
 
@@ -81,6 +56,11 @@ Action declare_devices(VerbOptions& verb) {
 
 }  // namespace
 
-Verb devices_verb() { return {"devices", "list haptic drivers and sound cards of this machine", declare_devices}; }
+Verb devices_verb() {
+    return {.name = "devices",
+            .about = "list haptic drivers and sound cards of this machine",
+            .add = declare_devices,
+            .schema = [] { return report::schema_of_output({report::devices_fields().schema()}); }};
+}
 
 }  // namespace tactus::command

@@ -26,7 +26,7 @@ int accept_place(const AcceptChoice& choice) {
     const analysis::Acceptance found =
         analysis::measure_acceptance(plan, choice.plan.parent_path(), fragment, by, beside);
     analysis::change_plan(plan, analysis::accepting(plan, fragment, by, found), {.by = "hand"}, choice.plan);
-    if (choice.json) return show_change(choice);
+    if (choice.result.json) return show_change(choice);
     fmt::print("{}: accepted by {} beside {}, residual {:.2f} mm; ", choice.names.front(), choice.by, found.partner,
                found.residual * 1e3);
     if (found.facing > 0.0)

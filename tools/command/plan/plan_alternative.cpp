@@ -19,7 +19,7 @@ struct AlternativeChoice : PlanChoice {
 };
 
 int list_alternatives(const PlanChoice& choice) {
-    if (choice.json) return show_plan(choice);
+    if (choice.result.json) return show_plan(choice);
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     for (const plan::PlanAlternative& a : plan.alternatives)
         fmt::print("{} {}: {}\n", &a == &plan.alternatives[static_cast<std::size_t>(plan.current)] ? '*' : ' ', a.name,

@@ -27,9 +27,9 @@ int export_plan(const ExportChoice& choice) {
         analysis::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format, choice.transform_format);
     for (const analysis::ExportedFragment& one : exported.written) {
         written.push_back({{"fragment", one.name}, {"files", one.files}, {"pose", pose_json<Json>(one.pose)}});
-        if (!choice.json) fmt::print("{}\n", fmt::join(one.files, ", "));
+        if (!choice.result.json) fmt::print("{}\n", fmt::join(one.files, ", "));
     }
-    if (choice.json) fmt::print("{}\n", written.dump(2));
+    if (choice.result.json) fmt::print("{}\n", written.dump(2));
     if (!exported.left_out.empty())
         fmt::print(stderr, "note: hidden, so not written: {}; show them with 'tactus plan unhide'\n",
                    fmt::join(exported.left_out, ", "));

@@ -24,7 +24,7 @@ int go(const HistoryChoice& choice, const plan::PlanCommand& command) {
     while (moved < choice.steps && (outcome = changed.apply(command)) == Outcome::done) ++moved;
     if (moved > 0) plan::save_case_plan(plan, choice.plan);
     const auto before = plan.before();
-    if (!choice.json) {
+    if (!choice.result.json) {
         if (moved == 0) fmt::print("{}\n", plan::text_of(outcome));
         else
             fmt::print("{}; {} of {} are done\n", counted(moved, "step"),

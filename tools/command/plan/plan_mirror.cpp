@@ -1,60 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan mirror: registers the mirrored healthy side as a target.
 #include "tools/analysis/plan/plan_mirror.hpp"
-#include "assets/file/json.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/bone/intact_side.hpp"
 #include "tools/command/plan/plan_options.hpp"
-#include "tools/command/pose_text.hpp"
+#include "tools/report/plan/mirror_result.hpp"
+#include "tools/report/result/printers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 namespace tactus::command {
 
 namespace {
-
-using file::Json;
 
 struct MirrorChoice : PlanChoice {
     std::filesystem::path healthy;
     bool settle = false, same_side = false;
     double max_residual = analysis::max_intact_median / mm;
 };
-
-Json faces_json(const analysis::FacesThere& faces) {
-    return {{"contact_mm2", faces.contact * 1e6},
-            {"gap_median_mm", faces.facing > 0.0 ? Json(faces.median * 1e3) : Json(nullptr)},
-            {"deepest_mm", faces.deepest * 1e3},
-            {"overlap_mm3", faces.overlap * 1e9}};
-}
-
-Json comparison_json(const std::string& fragment, const analysis::MirrorComparison& c) {
-    return {{"fragment", fragment},
-            {"away", motion_json<Json>(c.away)},
-            {"median_before_mm", c.registration.before * 1e3},
-            {"median_after_mm", c.registration.median * 1e3},
-            {"faces", {{"before", faces_json(c.before)}, {"after", faces_json(c.after)}}},
-            {"pose", pose_json<Json>(c.registration.pose)}};
-}
-
-void print_faces(const std::string& fragment, const char* when, const std::string& main,
-                 const analysis::FacesThere& faces) {
-    fmt::print("  {} {}: {:.0f} mm² touch {}, {:.0f} mm³ overlap, {:.2f} mm deep\n", fragment, when,
-               faces.contact * 1e6, main, faces.overlap * 1e9, faces.deepest * 1e3);
-}
-
-void print_comparison(const std::string& fragment, const std::string& main, const analysis::MirrorComparison& c) {
-    fmt::print(
-        "{}: {:.2f} mm and {:.2f}° from its best pose on the target; median {:.2f} mm, there "
-        "{:.2f} mm\n",
-        fragment, 1e3 * c.away.distance, c.away.angle_deg, c.registration.before * 1e3, c.registration.median * 1e3);
-    print_faces(fragment, "where it was", main, c.before);
-    print_faces(fragment, "there", main, c.after);
-}
 
 /// A side that lies wrongly is no target: the plan does not use it, and nothing is compared with it.
 bool is_doubtful(const MirrorChoice& choice, const fit::MirrorFit& fit) {
@@ -72,18 +38,6 @@ std::string doubt_words(const MirrorChoice& choice) {
         choice.same_side ? "the same" : "the other");
 }
 
-Json json_of(const MirrorChoice& choice, const fit::MirrorFit& fit, const Json& others) {
-    return {{"on", choice.names[0]},
-            {"mirrored", !choice.same_side},
-            {"doubt", is_doubtful(choice, fit) ? Json(doubt_words(choice)) : Json(nullptr)},
-            {"residual_mm", fit.registration.median * 1e3},
-            {"residual_p90_mm", fit.registration.p90 * 1e3},
-            {"plane_normal", {fit.plane.normal.x, fit.plane.normal.y, fit.plane.normal.z}},
-            {"plane_offset_mm", fit.plane.offset * 1e3},
-            {"asymmetry", {{"angle_deg", fit.rotation * 180.0 / std::numbers::pi}, {"distance_mm", fit.glide * 1e3}}},
-            {"others", others}};
-}
-
 void add_target(plan::CasePlan& plan, const analysis::MirrorStudy& laid, const MirrorChoice& choice) {
     plan::PlanStep step;
     step.kind = plan::StepKind::mirror;
@@ -92,23 +46,22 @@ void add_target(plan::CasePlan& plan, const analysis::MirrorStudy& laid, const M
     analysis::do_step(plan, std::move(step), choice.plan);
 }
 
-/// Compares the other fragments with the mirrored side, and moves them there when that is asked.
-Json compare_others(plan::CasePlan& plan, analysis::MirrorStudy& laid, const std::vector<int>& others,
-                    const MirrorChoice& choice) {
-    Json compared = Json::array();
+/// Compares the other fragments with the mirrored side, and moves them there if requested.
+std::vector<report::ComparedFragment> compare_others(plan::CasePlan& plan, analysis::MirrorStudy& laid,
+                                                     const std::vector<int>& others, const MirrorChoice& choice) {
+    std::vector<report::ComparedFragment> compared;
     for (const int other : others) {
-        const std::string& name = plan.fragments[static_cast<std::size_t>(other)].name;
-        const analysis::MirrorComparison found = laid.compare(other, plan::state_of(plan).arrangement.pose(other));
-        compared.push_back(comparison_json(name, found));
-        if (!choice.json) print_comparison(name, choice.names[0], found);
+        compared.push_back({plan.fragments[static_cast<std::size_t>(other)].name,
+                            laid.compare(other, plan::state_of(plan).arrangement.pose(other))});
         if (choice.settle)
-            analysis::change_plan(plan, plan::PlaceFragment{other, found.registration.pose}, {.by = "mirror"},
-                                  choice.plan);
+            analysis::change_plan(plan, plan::PlaceFragment{other, compared.back().found.registration.pose},
+                                  {.by = "mirror"}, choice.plan);
     }
     return compared;
 }
 
 int mirror(const MirrorChoice& choice) {
+    check_result_files(choice.result);
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();
@@ -121,25 +74,21 @@ int mirror(const MirrorChoice& choice) {
     }
     analysis::MirrorStudy laid(plan, folder, numbers[0], choice.healthy, !choice.same_side);
     const bool is_refused = is_doubtful(choice, laid.fit());
-    Json others = Json::array();
+    report::LaidTarget result{
+        choice.names[0], !choice.same_side, is_refused ? doubt_words(choice) : "", &laid.fit(), {}};
     if (!is_refused) {
         add_target(plan, laid, choice);
         numbers.erase(numbers.begin());
-        others = compare_others(plan, laid, numbers, choice);
+        result.others = compare_others(plan, laid, numbers, choice);
     }
     for (const std::string& note : laid.notes()) fmt::print(stderr, "note: {}\n", note);
-    if (choice.json) fmt::print("{}\n", json_of(choice, laid.fit(), others).dump(2));
-    else {
-        fmt::print("{} on {}: median {:.2f} mm, 90 % within {:.2f} mm\n", target_words(choice), choice.names[0],
-                   laid.fit().registration.median * 1e3, laid.fit().registration.p90 * 1e3);
-        if (is_refused) fmt::print("! {}\n", doubt_words(choice));
-    }
+    write_result(report::laid_target_fields().of(result), choice.result);
     return is_refused ? answer_is_no : done;
 }
 
 Action declare_plan_mirror(VerbOptions& verb) {
     const auto choice = std::make_shared<MirrorChoice>();
-    add_plan_options(verb, *choice);
+    add_plan_report_options(verb, *choice);
     verb.add("healthy", choice->healthy, "bone file or mesh of the other side, or of the same side").required();
     add_fragments(verb, *choice, "the fixed fragment; further fragments are compared, or moved with --settle");
     verb.flag("--same-side", choice->same_side,
@@ -154,10 +103,13 @@ Action declare_plan_mirror(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_mirror_verb() {
-    return {"mirror",
+    return {
+        .name = "mirror",
+        .about =
             "register the mirrored healthy side, or another bone, to a fragment, as a target; 1: the target is too far "
             "from the fragment",
-            declare_plan_mirror};
+        .add = declare_plan_mirror,
+        .schema = [] { return report::schema_of_output({report::laid_target_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

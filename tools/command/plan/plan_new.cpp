@@ -83,7 +83,7 @@ int make_plan(const NewChoice& choice) {
     std::vector<analysis::CaseFragment> loaded;
     for (const std::string& text : choice.names) add_file_of(plan, loaded, text, choice.plan.parent_path());
     plan::save_case_plan(plan, choice.plan);
-    if (!choice.json) fmt::print("{}: {}\n", choice.plan.string(), counted(plan.fragments.size(), "fragment"));
+    if (!choice.result.json) fmt::print("{}: {}\n", choice.plan.string(), counted(plan.fragments.size(), "fragment"));
     return show_change(choice);
 }
 

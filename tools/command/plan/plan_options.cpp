@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/plan/plan_options.hpp"
 
-#include <fmt/format.h>
+#include <utility>
 
 namespace tactus::command {
 
 void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
     verb.add("plan", choice.plan, "plan file, JSON").required();
-    verb.flag("--json", choice.json, "as JSON");
+    verb.flag("--json", choice.result.json, "as JSON");
+}
+
+void add_plan_report_options(VerbOptions& verb, PlanChoice& choice, Product product) {
+    verb.add("plan", choice.plan, "plan file, JSON").required();
+    add_result_options(verb, choice.result, ResultFigure::none, std::move(product));
 }
 
 void add_fit_options(VerbOptions& verb, PlanChoice& choice) {
@@ -29,14 +34,8 @@ Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about) {
     return verb.add("fragments", choice.names, about).required();
 }
 
-void print_warnings(const analysis::CaseWarnings& warnings) {
-    for (const bool is_fault : {true, false})
-        for (const analysis::CaseWarning& warning : warnings.all)
-            if (warning.is_fault == is_fault) fmt::print("{} {}\n", is_fault ? "!" : "warning:", warning.text);
-}
-
 int show_change(const PlanChoice& choice, bool is_changed) {
-    if (choice.json) return show_plan(choice);
+    if (choice.result.json) return show_plan(choice);
     if (!is_changed) fmt::print("the plan is already so\n");
     return done;
 }

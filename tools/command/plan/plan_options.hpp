@@ -4,7 +4,7 @@
 
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
-#include "tools/command/options.hpp"
+#include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
 
 #include <filesystem>
@@ -18,22 +18,21 @@ namespace tactus::command {
 struct PlanChoice {
     std::filesystem::path plan;
     std::vector<std::string> names;  ///< names of fragments
-    bool json = false;
+    ResultChoice result;
     std::optional<double> kerf;  ///< mm of bone lost along the faces
     bool with_healthy = false;  ///< the plan's healthy side takes part in fits
 };
 
-/// The plan and --json.
+/// The plan and --json, for the verbs that change it.
 void add_plan_options(VerbOptions& verb, PlanChoice& choice);
+/// The plan and the options of results, for the verbs that report. `product`: files that the verb makes besides.
+void add_plan_report_options(VerbOptions& verb, PlanChoice& choice, Product product = {});
 /// --kerf and --healthy, for the verbs that fit.
 void add_fit_options(VerbOptions& verb, PlanChoice& choice);
 analysis::FitWay fit_way(const PlanChoice& choice);
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about);
 
-/// Prints the warnings of a plan, those that 'plan check' refuses first.
-void print_warnings(const analysis::CaseWarnings& warnings);
-
-/// Prints the plan as text or JSON on standard output.
+/// Prints the plan, and writes its files.
 int show_plan(const PlanChoice& choice);
 /// Prints the plan after a change, with --json only; otherwise whether nothing had to be changed.
 int show_change(const PlanChoice& choice, bool is_changed = true);

@@ -22,7 +22,7 @@ int repaint_fragment(const RepaintChoice& choice) {
     analysis::Repainted made = analysis::repaint(
         open.plan, choice.plan.parent_path(), plan::find_fragment(open.plan, name), choice.file, choice.is_same_bone);
     analysis::do_step(open.plan, std::move(made.step), choice.plan);
-    if (!choice.json)
+    if (!choice.result.json)
         fmt::print("{}: {}, {}; poses stay, 'tactus plan undo' takes the file before back\n", name,
                    choice.file.string(),
                    made.faces > 0 ? counted(made.faces, "painted face")

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan settle: refines fitted fragments against all their neighbours.
-#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/plan/match_reason.hpp"
 #include "tools/analysis/plan/plan_words.hpp"
-#include "tools/command/plan/match_text.hpp"
 #include "tools/command/plan/plan_options.hpp"
-
-#include <fmt/format.h>
+#include "tools/report/plan/match_result.hpp"
+#include "tools/report/result/printers.hpp"
 
 namespace tactus::command {
 
@@ -39,12 +37,13 @@ std::vector<int> settled_fragments(const plan::CasePlan& plan, const std::vector
 
 int settle(const SettleChoice& choice) {
     constexpr int max_rounds = 4;
+    check_result_files(choice.result);
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const std::vector<int> numbers = settled_fragments(plan, choice.names);
     const std::vector<int> held = held_fragments(plan::state_of(plan));
     analysis::PlanMatching matching(plan, choice.plan.parent_path(), fit_way(choice));
-    file::Json rows = file::Json::array();
+    report::SettledFragments result;
     bool all_fit = true;
     const auto settle_one = [&](int n) {
         const fit::Arrangement now = plan::state_of(plan).arrangement;
@@ -54,8 +53,7 @@ int settle(const SettleChoice& choice) {
         const bool fits = found.match.verdict == fit::FitVerdict::fit;
         if (fits) analysis::change_plan(plan, analysis::settling(found.match), {.by = "settle"}, choice.plan);
         all_fit = all_fit && fits;
-        rows.push_back(match_json<file::Json>(plan, found, reason));
-        if (!choice.json) print_match(plan, found, reason);
+        result.rows.push_back({&plan, found, reason});
     };
     for (int pass = 0; pass < choice.passes; ++pass)
         for (const int n : numbers) settle_one(n);
@@ -64,18 +62,14 @@ int settle(const SettleChoice& choice) {
         for (const int n : held)
             if (!plan::state_of(plan).holds(n)) settle_one(n);
     const plan::PlanState state = plan::state_of(plan);
-    if (choice.json)
-        fmt::print(
-            "{}\n",
-            file::Json{{"version", 1}, {"rows", rows}, {"assemblies", analysis::assembly_names(plan, state)}}.dump(2));
-    else
-        for (const std::string& line : analysis::connection_words(plan, state)) fmt::print("{}\n", line);
+    result.assemblies = analysis::assembly_names(plan, state);
+    write_result(report::settled_fields().of(result), choice.result);
     return all_fit && analysis::is_in_one_part(state) ? done : answer_is_no;
 }
 
 Action declare_plan_settle(VerbOptions& verb) {
     const auto choice = std::make_shared<SettleChoice>();
-    add_plan_options(verb, *choice);
+    add_plan_report_options(verb, *choice);
     verb.add("fragments", choice->names, "fragments to settle (default: all fitted ones)");
     verb.add("--passes", choice->passes, "how often").range(1, 20);
     add_fit_options(verb, *choice);
@@ -85,10 +79,13 @@ Action declare_plan_settle(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_settle_verb() {
-    return {"settle",
+    return {
+        .name = "settle",
+        .about =
             "refine fitted fragments, each against all its neighbours; 1: one does not fit, or the fragments are not "
             "connected",
-            declare_plan_settle};
+        .add = declare_plan_settle,
+        .schema = [] { return report::schema_of_output({report::settled_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

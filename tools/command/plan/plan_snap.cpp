@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan snap: moves a fragment of a plan to the pose where its fracture fits.
-#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/plan/match_reason.hpp"
-#include "tools/command/plan/match_text.hpp"
 #include "tools/command/plan/plan_options.hpp"
+#include "tools/report/plan/match_result.hpp"
+#include "tools/report/result/printers.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +18,7 @@ struct SnapChoice : PlanChoice {
 };
 
 int snap_fragment(const SnapChoice& choice) {
+    check_result_files(choice.result);
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();
@@ -49,32 +50,18 @@ int snap_fragment(const SnapChoice& choice) {
     // A place that no fit vouches for connects nothing: the step has no fit in it, and 'plan accept' adds the decision.
     if (is_uncertain && choice.takes_uncertain)
         analysis::change_plan(plan, plan::PlaceFragment{moving, found.match.pose}, {.by = "snap"}, choice.plan);
-    if (choice.json) {
-        using file::Json;
-        Json json = match_json<Json>(plan, found, reason);
-        json["moved_there"] = fits || (is_uncertain && choice.takes_uncertain);
-        json["as_scanned_mm2"] = left_out_json<Json>(plan, matching, a);
-        if (target)
-            json["target"] = {{"median_before_mm", 1e3 * target->before},
-                              {"median_there_mm", has_place ? Json(1e3 * target->there) : Json(nullptr)}};
-        fmt::print("{}\n", json.dump(2));
-    } else {
-        print_match(plan, found, reason);
-        if (is_uncertain && choice.takes_uncertain)
-            fmt::print("{} is put there; 'tactus plan accept' settles it\n", choice.names[0]);
-        print_left_out(plan, matching, a);
-        if (target)
-            fmt::print("from the healthy side: median {:.2f} mm where it was{}\n", 1e3 * target->before,
-                       has_place ? fmt::format(", {:.2f} mm {}", 1e3 * target->there,
-                                               found.as_scanned ? "where the scan has it" : "where its faces fit")
-                                 : "");
-    }
+    write_result(report::snapped_fields().of({{&plan, found, reason},
+                                              fits || (is_uncertain && choice.takes_uncertain),
+                                              report::areas_left_out(plan, matching, a),
+                                              target,
+                                              has_place}),
+                 choice.result);
     return fits ? done : answer_is_no;
 }
 
 Action declare_plan_snap(VerbOptions& verb) {
     const auto choice = std::make_shared<SnapChoice>();
-    add_plan_options(verb, *choice);
+    add_plan_report_options(verb, *choice);
     add_fragments(verb, *choice, "the moving fragment (with its group) and the fixed one (default: the best match)")
         .count(1, 2);
     verb.add("--mode", choice->mode, "extended: from the current pose; global: from any pose")
@@ -89,7 +76,10 @@ Action declare_plan_snap(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_snap_verb() {
-    return {"snap", "fit the fracture of a fragment to another fragment; 1: no fit", declare_plan_snap};
+    return {.name = "snap",
+            .about = "fit the fracture of a fragment to another fragment; 1: no fit",
+            .add = declare_plan_snap,
+            .schema = [] { return report::schema_of_output({report::snapped_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

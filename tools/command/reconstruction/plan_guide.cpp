@@ -10,7 +10,7 @@
 #include "tools/analysis/cutting_guide/guide_task.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/report/cutting_guide/guide_report.hpp"
-#include "tools/report/figures/html_report.hpp"
+#include "tools/report/result/printers.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ namespace tactus::command {
 namespace {
 
 struct GuideOptions : PlanChoice {
-    std::filesystem::path out, report, task;
+    std::filesystem::path task;
     std::string bone = "fibula", printer = "sla", label;
     int cut = 0, sides = 3;
     std::optional<double> blade, clearance, offset;
@@ -48,24 +48,6 @@ analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy
     return choice;
 }
 
-void print_guide(const analysis::PlannedGuide& guide, const std::filesystem::path& out) {
-    fmt::print("{}: {} guide, {} triangles, {:.1f} cm³, closed, one part\n", out.string(),
-               analysis::name_of(guide.bone), guide.made.surface.triangles.size(), guide.volume * 1e6);
-    if (guide.wall) fmt::print("thinnest wall {:.2f} mm\n", guide.wall->thickness / mm);
-    for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
-        const cutting_guide::MadeSlot& slot = guide.made.slots[n];
-        const cutting_guide::SlotFit& fit = guide.refits[n];
-        fmt::print("slot {} ({}): {}, {:.1f} mm deep, {:.3f} mm and {:.3f}° off the plan{}\n", slot.cut.letter,
-                   slot.cut.name, fit.width > 0.0 ? fmt::format("{:.2f} mm wide", fit.width / mm) : "a ledge",
-                   slot.depth / mm, std::abs(fit.offset / mm), fit.angle / degree,
-                   slot.play ? fmt::format(", play {:.1f}°", *slot.play / degree) : "");
-    }
-    fmt::print("{:.0f} % in contact; play on the bone {:.1f} mm, {:.1f}°\n", 100.0 * guide.seat.contact_share(),
-               guide.seat.play / mm, guide.seat.play_angle / degree);
-    for (const analysis::GuideWarning& w : guide.warnings) fmt::print("warning: {}\n", w.text);
-    fmt::print("for research, not a medical device\n");
-}
-
 /// SAW.toml has its bones in SAW-bone.vdb and SAW-guide.vdb; empty: no task.
 std::filesystem::path beside_task(const std::filesystem::path& task, const char* what) {
     if (task.empty()) return {};
@@ -75,48 +57,36 @@ std::filesystem::path beside_task(const std::filesystem::path& task, const char*
 int make_guide(const GuideOptions& options) {
     if (!options.task.empty() && options.task.extension() != ".toml")
         throw Error(fmt::format("{}: a task is written as .toml", options.task.string()));
-    const std::string kind = options.out.extension().string();
-    if (kind != ".stl" && kind != ".3mf" && kind != ".ply")
-        throw Error(fmt::format("{}: a guide is written as .stl, .3mf or .ply", options.out.string()));
+    check_result_files(options.result);
+    const std::vector<std::filesystem::path> meshes = options.result.products();
+    if (meshes.empty()) throw Error("a guide is written as .stl, .3mf or .ply: -o GUIDE.stl");
     const plan::CasePlan plan = plan::load_case_plan(options.plan);
     const std::filesystem::path folder = options.plan.parent_path();
     std::vector<std::filesystem::path> sources = plan::files_of(plan, folder);
     sources.push_back(options.plan);
     const std::filesystem::path bone = beside_task(options.task, "bone"), body = beside_task(options.task, "guide");
-    file::check_outputs(sources, std::array{options.out, options.report, options.task, bone, body});
+    std::vector<std::filesystem::path> outputs = options.result.out;
+    outputs.insert(outputs.end(), {options.task, bone, body});
+    file::check_outputs(sources, outputs);
     const analysis::FlapStudy study(plan, plan::state_of(plan), folder);
     const analysis::PlannedGuide guide = analysis::plan_guide(study, plan.title, choice_of(options, study));
-    if (!options.report.empty()) {
-        const std::vector<report::ReportBlock> blocks = report::guide_blocks(guide);
-        file::write_whole_file(options.report, report::html::page(plan.title, report::html_of(blocks, "guide")));
-    }
     if (!options.task.empty()) {
         const analysis::GuideTask task = analysis::guide_task(guide, plan.title, bone.filename(), body.filename());
         bone::save_bone(task.bone, bone);
         bone::save_bone(task.guide, body);
         file::write_whole_file(options.task, task.text);
     }
-    mesh::write_mesh(std::array{mesh::ColouredSurface{guide.made.surface, Vec3(0.35, 0.62, 0.72)}}, options.out);
-    if (options.json) {
-        file::Json json = analysis::guide_json(guide);
-        json["file"] = options.out.string();
-        if (!options.report.empty()) json["report"] = options.report.string();
-        if (!options.task.empty()) json["task"] = options.task.string();
-        fmt::print("{}\n", json.dump(2));
-    } else {
-        print_guide(guide, options.out);
-        if (!options.task.empty())
-            fmt::print("{}: a task to saw in it, with {} and {}\n", options.task.string(), bone.string(),
-                       body.string());
-    }
+    for (const std::filesystem::path& out : meshes)
+        mesh::write_mesh(std::array{mesh::ColouredSurface{guide.made.surface, Vec3(0.35, 0.62, 0.72)}}, out);
+    write_result(report::guide_fields().of({&guide, plan.title, meshes.front().string(), options.task.string()}),
+                 options.result);
     return done;
 }
 
 Action declare_plan_guide(VerbOptions& verb) {
     const auto o = std::make_shared<GuideOptions>();
-    add_plan_options(verb, *o);
-    verb.add("-o,--out", o->out, "STL, 3MF or PLY file, mm, LPS").required();
-    verb.add("--report", o->report, "HTML page with pictures, dimensions and checks");
+    add_plan_report_options(verb, *o, {{".stl", ".3mf", ".ply"}, "the guide, mm, LPS"});
+    verb.old("--report", "--out");
     verb.add("--task", o->task,
              "TOML file: a task for 'tactus session', to saw in the guide; its bones are written beside it");
     verb.add("--bone", o->bone, "the donor with its osteotomies, or the jaw with its resection")
@@ -154,7 +124,10 @@ Action declare_plan_guide(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_guide_verb() {
-    return {"guide", "make a printed guide for the cuts of a reconstruction, and check it", declare_plan_guide};
+    return {.name = "guide",
+            .about = "make a printed guide for the cuts of a reconstruction, and check it",
+            .add = declare_plan_guide,
+            .schema = [] { return report::schema_of_output({report::guide_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan paddle: places the skin paddle of a flap, and drapes it over a defect.
-#include "assets/file/json.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/plan/plan_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/plan/paddle_study.hpp"
 #include "tools/command/plan/plan_options.hpp"
+#include "tools/report/plan/plan_result.hpp"
+#include "tools/report/reconstruction/flap_result.hpp"
 #include "tools/report/reconstruction/paddle_picture.hpp"
+#include "tools/report/result/printers.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -21,19 +21,14 @@ namespace tactus::command {
 namespace {
 
 namespace fs = std::filesystem;
-using file::Json;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 struct PaddleChoice : PlanChoice {
-    fs::path defect, out, picture;
+    fs::path defect, picture;
     std::vector<double> at;
     std::optional<double> length, width;
     double rope = 50.0, thickness = 10.0, pressure = 500.0, young = 100.0;
     bool remove = false;
 };
-
-Json in_mm(const Vec3& place) { return {place.x / mm, place.y / mm, place.z / mm}; }
 
 /// Adds a step when the plan's paddle changes.
 void place(const PaddleChoice& choice) {
@@ -67,51 +62,10 @@ void place(const PaddleChoice& choice) {
     });
 }
 
-Json json_of(const analysis::PaddleStudy& found, const reconstruction::SkinPaddle& paddle) {
-    const skin::DrapedPaddle& d = found.draped;
-    Json ropes = Json::array();
-    for (const skin::PaddleRope& r : d.ropes)
-        ropes.push_back({{"name", r.name},
-                         {"bone_mm", in_mm(r.bone)},
-                         {"skin_mm", in_mm(r.skin)},
-                         {"distance_mm", r.distance / mm},
-                         {"slack_mm", r.slack / mm},
-                         {"tension_N", r.tension}});
-    return {
-        {"paddle", {{"at_mm", in_mm(paddle.at)}, {"length_mm", paddle.length / mm}, {"width_mm", paddle.width / mm}}},
-        {"perforator_length_mm", found.settings.rope_length / mm},
-        {"thickness_mm", found.settings.sheet.thickness / mm},
-        {"perforators", ropes},
-        {"unused_perforators", d.unused},
-        {"area_flat_mm2", d.area_flat * 1e6},
-        {"area_mm2", d.area * 1e6},
-        {"defect_mm2", d.defect_area * 1e6},
-        {"coverage", d.coverage},
-        {"on_bone", d.touching},
-        {"fold_deg", d.fold / degree},
-        {"at_rest", d.is_settled},
-        {"warnings", analysis::json_of(found.warnings)}};
-}
-
-void print(const analysis::PaddleStudy& found, const reconstruction::SkinPaddle& paddle) {
-    const skin::DrapedPaddle& d = found.draped;
-    fmt::print(
-        "paddle of {:.0f} by {:.0f} mm on a defect of {:.1f} cm2: covers {:.0f} %, {:.0f} % of it on bone, fold {:.0f} "
-        "degrees, area {:+.1f} %\n",
-        paddle.length / mm, paddle.width / mm, d.defect_area * 1e4, 100.0 * d.coverage, 100.0 * d.touching,
-        d.fold / degree, 100.0 * (d.area / d.area_flat - 1.0));
-    for (const skin::PaddleRope& r : d.ropes)
-        fmt::print("perforator '{}': {:.1f} mm from bone to skin, {} {:.1f} mm\n", r.name, r.distance / mm,
-                   r.slack < 0.0 ? "too short by" : "slack", std::abs(r.slack) / mm);
-    for (const std::string& name : d.unused)
-        fmt::print("perforator '{}': not used, on bone that is not kept or beyond the ends of the paddle\n", name);
-    for (const analysis::CaseWarning& w : found.warnings) fmt::print("warning: {}\n", w.text);
-    fmt::print("the skin's mechanics are assumed; for research, not a medical device\n");
-}
-
 int paddle(const PaddleChoice& choice) {
-    if (choice.defect.empty() && (!choice.out.empty() || !choice.picture.empty()))
-        throw Error("-o and --picture show the draped paddle; give --defect CURVE.mrk.json, too");
+    check_result_files(choice.result);
+    if (choice.defect.empty() && (!choice.result.out.empty() || !choice.picture.empty()))
+        throw Error("-o and --picture are about the draped paddle; give --defect CURVE.mrk.json, too");
     if (choice.remove && (!choice.defect.empty() || !choice.at.empty() || choice.length || choice.width))
         throw Error("--remove excludes --defect, --at, --length and --width");
     place(choice);
@@ -128,23 +82,21 @@ int paddle(const PaddleChoice& choice) {
     const analysis::PaddleStudy found = analysis::study_paddle(study, choice.defect, settings);
     for (const std::string& note : found.notes) fmt::print(stderr, "note: {}\n", note);
     const geometry::TriangleSurface shell = skin::shell_of(found.draped, settings.sheet.thickness);
-    if (!choice.out.empty()) {
-        const std::vector<mesh::ColouredSurface> shells{{shell, report::paddle_colour}};
-        mesh::write_mesh(shells, choice.out);
-    }
+    const std::vector<mesh::ColouredSurface> shells{{shell, report::paddle_colour}};
+    for (const fs::path& out : choice.result.products()) mesh::write_mesh(shells, out);
     if (!choice.picture.empty()) report::write_paddle_picture(study, found, choice.picture);
-    if (choice.json) fmt::print("{}\n", json_of(found, *study.flap().paddle).dump(2));
-    else print(found, *study.flap().paddle);
+    write_result(report::paddle_fields().of({&found, &*study.flap().paddle}), choice.result);
     return found.warnings.empty() ? done : answer_is_no;
 }
 
 }  // namespace
 
 Verb plan_paddle_verb() {
-    return {"paddle", "place a flap's skin paddle, and drape it over a defect; 1: there are warnings",
-            [](VerbOptions& verb) -> Action {
+    return {.name = "paddle",
+            .about = "place a flap's skin paddle, and drape it over a defect; 1: there are warnings",
+            .add = [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<PaddleChoice>();
-                add_plan_options(verb, *choice);
+                add_plan_report_options(verb, *choice, {{".stl", ".ply"}, "the draped paddle as a closed mesh"});
                 verb.add("--at", choice->at,
                          "middle of the paddle on the skin of the leg: X Y Z, mm, frame of the donor (default: at the "
                          "perforators, 20 mm behind the bone's posterior border)")
@@ -171,10 +123,14 @@ Verb plan_paddle_verb() {
                     .range(1.0, 1e5)
                     .needs(defect)
                     .shows_default();
-                verb.add("-o,--out", choice->out, "the draped paddle as a closed mesh: .stl or .ply");
                 verb.add("--picture", choice->picture, "bone, paddle and perforators: .png");
                 return [choice] { return paddle(*choice); };
-            }};
+            },
+            // Without --defect: the plan.
+            .schema =
+                [] {
+                    return report::schema_of_output({report::paddle_fields().schema(), report::plan_fields().schema()});
+                }};
 }
 
 }  // namespace tactus::command

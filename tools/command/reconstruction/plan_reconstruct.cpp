@@ -19,7 +19,7 @@ int run(const ReconstructChoice& choice) {
     const reconstruction::ReconstructionInputs inputs = reconstruction::read_reconstruction_inputs(choice.inputs);
     for (const std::string& note : inputs.notes) fmt::print(stderr, "note: {}\n", note);
     const analysis::MadeReconstruction made = analysis::make_reconstruction(inputs, choice.plan, choice.alternative);
-    if (choice.json) return show_change(choice);
+    if (choice.result.json) return show_change(choice);
     fmt::print("{}:", choice.plan.string());
     for (const int piece : plan::state_of(made.plan).pieces)
         fmt::print(" {}", made.plan.fragments[static_cast<std::size_t>(piece)].name);

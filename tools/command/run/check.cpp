@@ -6,6 +6,7 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/progress.hpp"
 #include "tools/report/patch/check_result.hpp"
 #include "tools/report/result/printers.hpp"
 #include "tools/run/load_plan.hpp"
@@ -53,9 +54,9 @@ std::vector<analysis::ZWidthCurve> z_width_of(const io::EngineHost& host) {
     }
     std::ranges::sort(grid.rates);
     for (analysis::ZWidthDevice& device : analysis::modelled_devices()) devices.push_back(std::move(device));
-    LiveLine line;
-    return analysis::z_width(devices, grid, [&line](std::size_t done, std::size_t all) {
-        line.show(fmt::format("walls: {} of {}", done, all));
+    Progress shown;
+    return analysis::z_width(devices, grid, [&shown](std::size_t done, std::size_t all) {
+        shown.show(static_cast<double>(done) / static_cast<double>(all), fmt::format("{} of {} walls", done, all));
     });
 }
 

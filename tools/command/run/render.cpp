@@ -2,6 +2,7 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/progress.hpp"
 #include "tools/render/frames.hpp"
 #include "tools/run/device_scale.hpp"
 #include "tools/run/kept_assets.hpp"
@@ -76,19 +77,18 @@ int render(const RenderChoice& choice) {
     const int threads =
         choice.threads > 0 ? choice.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 
-    LiveLine line;
+    Progress shown;
     const auto begin = std::chrono::steady_clock::now();
     engine.render(threads, [&](double done) {
         if (interrupted) engine.stop();
         if (frames) frames->advance(engine.progress_seconds() - 1e-6);
-        line.show(
-            fmt::format("{:3.0f} %  {:.1f} s of {:.1f} s", 100.0 * done, done * options.seconds, options.seconds));
+        shown.show(done, fmt::format("{:.1f} s of {:.1f} s", done * options.seconds, options.seconds));
     });
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const double ran = engine.progress_seconds();
     const bool is_whole = !interrupted || ran >= options.seconds;
     if (frames) frames->advance(is_whole ? options.seconds : ran - 1e-6);
-    line.clear();
+    shown.clear();
     engine.complete();
     const Report report = engine.report();
     WrittenFiles written = write_results(report, folder.path());

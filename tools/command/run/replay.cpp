@@ -7,6 +7,7 @@
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/progress.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/run/output_folder.hpp"
 #include "tools/run/replayed_take.hpp"
@@ -137,10 +138,10 @@ int replay(const ReplayChoice& choice) {
     };
     ReplayedTake repeated(take, options, assets);
     run::Engine& engine = repeated.engine();
-    LiveLine line;
+    Progress shown;
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    engine.render(threads, [&](double done) { line.show(fmt::format("{:3.0f} %", 100.0 * done)); });
-    line.clear();
+    engine.render(threads, [&](double done) { shown.show(done); });
+    shown.clear();
     engine.complete();
     std::vector<std::string> losses = engine.losses();
     if (folder) {

@@ -76,8 +76,9 @@ int compare_many(const CompareChoice& choice, const analysis::CompareSettings& s
     const std::vector<analysis::PairedFiles> names = analysis::paired_files(settings.reference, settings.output);
     if (!choice.plot.empty()) fs::create_directories(choice.plot);
     std::vector<ComparedPair> pairs(names.size());
-    const std::vector<std::string> failures =
-        run_batch(names.size(), choice.jobs, "pairs", [&](std::size_t i, const std::function<void(double)>&) {
+    const std::vector<std::string> failures = run_batch(
+        names.size(), choice.jobs, "pairs",
+        [&](std::size_t i, const std::function<void(double)>&) {
             pairs[i].reference = names[i].reference;
             pairs[i].output = names[i].output;
             if (names[i].reference.empty())
@@ -93,7 +94,8 @@ int compare_many(const CompareChoice& choice, const analysis::CompareSettings& s
             if (choice.plot.empty()) return;
             const fs::path varied = fs::is_directory(settings.output) ? one.output : one.reference;
             save_figure(report::draw_comparison(pairs[i]), choice.plot / (varied.filename().string() + ".svg"), {});
-        });
+        },
+        choice.result.quiet);
     tell_failures(failures);
     return finish(choice, {pairs, failures});
 }

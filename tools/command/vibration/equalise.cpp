@@ -45,7 +45,7 @@ Action declare_equalise(VerbOptions& verb) {
     analysis::EqualiseSettings& settings = choice->settings;
     vibration::EqualiserDesign& design = settings.design;
     verb.add("response", settings.response, "file of 'tactus measure', or a table of Hz, dB and degrees").required();
-    add_result_options(verb, choice->result, ResultFigure::none, {".toml", "the filter"}).required();
+    add_result_options(verb, choice->result, ResultFigure::none, {{".toml"}, "the filter"}).required();
     verb.add("--kind", choice->kind,
              "minimum: minimum phase, adds at most 2 ms; linear: also corrects the phase, adds half its length")
         .shows_default()

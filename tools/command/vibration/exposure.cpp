@@ -80,7 +80,8 @@ auto analyse_all(const ExposureChoice& choice, const std::vector<fs::path>& file
     batch.operations.resize(files.size());
     batch.errors = run_batch(
         files.size(), choice.jobs, "files",
-        [&](std::size_t i, const std::function<void(double)>& progress) { batch.operations[i] = one(i, progress); });
+        [&](std::size_t i, const std::function<void(double)>& progress) { batch.operations[i] = one(i, progress); },
+        choice.result.quiet);
     batch.is_bad = tell_failures(batch.errors) > 0;
     return batch;
 }

@@ -6,6 +6,7 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/progress.hpp"
 #include "tools/report/result/printers.hpp"
 #include "tools/report/vibration/equaliser_result.hpp"
 #include "tools/terminal.hpp"
@@ -28,10 +29,10 @@ struct MeasureChoice {
 
 int measure(const MeasureChoice& choice) {
     check_result_files(choice.result);
-    LiveLine line;
-    const analysis::Measurement found = analysis::measure(
-        choice.settings, [&](double share) { line.show(fmt::format("{:3.0f} % of the sweep", 100.0 * share)); });
-    line.clear();
+    Progress progress(choice.result.quiet);
+    const analysis::Measurement found =
+        analysis::measure(choice.settings, [&](double share) { progress.show(share, "of the sweep"); });
+    progress.clear();
     std::vector<std::filesystem::path> files = choice.result.products();
     if (files.empty()) files.emplace_back("response.csv");
     for (const std::filesystem::path& file : files) sound::save_response(found.response, file);
@@ -74,7 +75,7 @@ Action declare_measure(VerbOptions& verb) {
     verb.add("--output-channel", settings.output_channel, "output channel of the card, from 1").shows_default();
     verb.add("--input-channel", settings.input_channel, "input channel of the card, from 1").shows_default();
     verb.add("--rate", settings.rate, "sample rate of the card, Hz").unit("Hz").shows_default().range(1e3, 1e6);
-    add_result_options(verb, choice->result, ResultFigure::none, {".csv", "the response (default response.csv)"});
+    add_result_options(verb, choice->result, ResultFigure::none, {{".csv"}, "the response (default response.csv)"});
     verb.add("--equaliser", choice->equaliser,
              "also make the filter for the 'equaliser' node, as 'equalise' does: TOML file");
     verb.band("--band", settings.first, settings.last, "first and last frequency of the sweep, Hz");

@@ -41,7 +41,7 @@ Action declare_model(VerbOptions& verb) {
     verb.add("recordings", choice->settings.recordings,
              "recording set, TOML, with the rate and thrust of each recording")
         .required();
-    add_result_options(verb, choice->result, ResultFigure::none, {".toml", "the model"}).required();
+    add_result_options(verb, choice->result, ResultFigure::none, {{".toml"}, "the model"}).required();
     verb.band("--band", choice->settings.lowest, choice->settings.highest, "band of the distances, Hz");
     add_stretch_options(verb, choice->stretch);
     return [choice] { return model(*choice); };

@@ -88,7 +88,7 @@ Action declare_response(VerbOptions& verb) {
     verb.add("--overlap", choice->overlap, "overlap as a fraction of a segment (default 0.5)").range(0.0, 0.99);
     verb.add("--csv", choice->csv, "CSV file with H1, H2, Hv and coherence over frequency");
     add_result_options(verb, choice->result, ResultFigure::styled,
-                       {".csv", "the response as 'measure' writes it, for 'equalise'"});
+                       {{".csv"}, "the response as 'measure' writes it, for 'equalise'"});
     verb.old("--plot", "--out");
     return [choice] { return response(*choice); };
 }

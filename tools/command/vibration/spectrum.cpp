@@ -146,10 +146,12 @@ int spectrum(const SpectrumChoice& choice) {
             if (!folder.empty() && !(folder == choice.plot && report::is_figure_file(folder)))
                 fs::create_directories(folder);
     std::vector<Outcome> outcomes(files.size());
-    const std::vector<std::string> failures =
-        run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
+    const std::vector<std::string> failures = run_batch(
+        files.size(), choice.jobs, "files",
+        [&](std::size_t i, const std::function<void(double)>& progress) {
             outcomes[i] = analyse(files[i], choice, method, many, progress);
-        });
+        },
+        choice.result.quiet);
     const bool bad = tell_failures(failures) > 0;
     if (many && report::is_figure_file(choice.plot)) {
         std::vector<analysis::AnalysedFile> drawn;

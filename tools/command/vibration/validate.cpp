@@ -63,7 +63,8 @@ int validate(const ValidateChoice& choice) {
             const std::function<void(double)>&) {  // Spectrograms are large, so they are computed for one level only.
             analysis::validate(validation, i, settings,
                                pictures && validation.runs[i].level_db == settings.levels.front());
-        });
+        },
+        choice.result.quiet);
     tell_failures(failures);
     for (std::size_t i = 0; i < failures.size(); ++i) {
         ValidationRun& run = validation.runs[i];

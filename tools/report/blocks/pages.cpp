@@ -111,6 +111,17 @@ public:
         paragraph(title, 17.0, true, false);
     }
 
+    /// Keeps a heading on the page of a drawing or of the first pictures that follow it.
+    void keep_with(const ReportBlock& next) {
+        double high = 0.0;
+        if (const auto* d = std::get_if<Drawing>(&next); d && d->figure.height() <= 1.1 * d->figure.width())
+            high = d->figure.height() *
+                   std::min({points_per_pixel, inside / d->figure.width(), max_drawing / d->figure.height()});
+        if (const auto* g = std::get_if<PictureGrid>(&next);
+            g && !g->pictures.empty() && g->pictures[0].image.width > 0)
+            high = 0.5 * (inside - gutter) * g->pictures[0].image.height / g->pictures[0].image.width;
+        if (high > 0.0) need(high + 60.0);
+    }
     void add(const Heading& h) {
         need(60.0);
         y_ += h.depth > 1 ? 8.0 : 12.0;
@@ -295,7 +306,10 @@ private:
 
 std::vector<Figure> pages_of(const std::string& title, std::span<const ReportBlock> blocks) {
     Layout layout(title);
-    for (const ReportBlock& block : blocks) std::visit([&](const auto& one) { layout.add(one); }, block);
+    for (std::size_t n = 0; n < blocks.size(); ++n) {
+        if (n + 1 < blocks.size() && std::holds_alternative<Heading>(blocks[n])) layout.keep_with(blocks[n + 1]);
+        std::visit([&](const auto& one) { layout.add(one); }, blocks[n]);
+    }
     return layout.pages();
 }
 

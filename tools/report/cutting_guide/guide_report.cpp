@@ -4,13 +4,13 @@
 #include "dsp/core/constants.hpp"
 #include "tools/render/flap_scene.hpp"
 #include "tools/report/cutting_guide/guide_drawing.hpp"
+#include "tools/report/reconstruction/fibula_result.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -51,57 +51,155 @@ geometry::TriangleSurface near_guide(const analysis::PlannedGuide& guide) {
     return shown;
 }
 
-std::string hundredths(double metres) { return fmt::format("{:.2f}", metres / mm); }
+/// A slot with its walls as they are in the mesh.
+struct FittedSlot {
+    const cutting_guide::MadeSlot* slot;
+    const cutting_guide::SlotFit* fit;
+};
 
-ReportTable guide_slots(const analysis::PlannedGuide& guide) {
-    ReportTable table{{"slot", "cut", "sides", "width, mm", "depth, mm", "length, mm", "off the plan, mm", "°",
-                       "play of the blade, °"},
-                      {}};
-    for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
-        const cutting_guide::MadeSlot& s = guide.made.slots[n];
-        const cutting_guide::SlotFit& fit = guide.refits[n];
-        table.rows.push_back({std::string(1, s.cut.letter), s.cut.name, fmt::format("{}", static_cast<int>(s.sides)),
-                              fit.width > 0.0 ? hundredths(fit.width) : "ledge", fmt::format("{:.1f}", s.depth / mm),
-                              fmt::format("{:.1f}", s.length / mm), fmt::format("{:.3f}", std::abs(fit.offset) / mm),
-                              fmt::format("{:.3f}", fit.angle / degree),
-                              s.play ? fmt::format("{:.1f}", *s.play / degree) : "not held"});
-    }
-    return table;
+const Fields<FittedSlot>& slot_fields() {
+    using S = FittedSlot;
+    const auto slot = [](auto member) { return [member](const S& s) { return s.slot->*member; }; };
+    using Made = cutting_guide::MadeSlot;
+    static const Fields<S> all =
+        Fields<S>("slot of a guide")
+            .text("letter", "slot", [](const S& s) { return std::string(1, s.slot->cut.letter); })
+            .text("cut", "cut", [](const S& s) { return s.slot->cut.name; })
+            .child("plane", "", plane_fields(), [](const S& s) -> const auto& { return s.slot->cut.plane; })
+            .integer("sides", "sides", [](const S& s) { return static_cast<int>(s.slot->sides); })
+            .number("width_mm", "width", from_si(2, "mm"),
+                    [](const S& s) { return s.fit->width > 0.0 ? std::optional(s.fit->width) : std::nullopt; })
+            .number("depth_mm", "depth", from_si(1, "mm"), slot(&Made::depth))
+            .number("length_mm", "length", from_si(1, "mm"), slot(&Made::length))
+            .number("offset_mm", "off the plan", from_si(3, "mm").with_sign(), [](const S& s) { return s.fit->offset; })
+            .number("angle_error_deg", "angle off the plan", from_si(3, "°"), [](const S& s) { return s.fit->angle; })
+            .number("play_deg", "play of the blade", from_si(1, "°"), slot(&Made::play));
+    return all;
 }
 
-ReportTable guide_holes(const analysis::PlannedGuide& guide) {
-    ReportTable table{{"hole", "diameter, mm", "for"}, {}};
-    for (const cutting_guide::GuideHole& h : guide.made.holes)
-        table.rows.push_back({h.name, fmt::format("{:.1f}", 2.0 * h.radius / mm),
-                              h.is_predictive ? "drilled for later" : "fixes the guide"});
-    return table;
+const Fields<cutting_guide::GuideHole>& hole_fields() {
+    using H = cutting_guide::GuideHole;
+    static const Fields<H> all =
+        Fields<H>("hole of a guide")
+            .text("name", "hole", &H::name)
+            .vector("at_mm", "", from_si(2, "mm"), &H::at)
+            .vector("axis", "", fixed(4), &H::axis)
+            .number("diameter_mm", "diameter", from_si(1, "mm"), [](const H& h) { return 2.0 * h.radius; })
+            .flag("predictive", "", &H::is_predictive)
+            .text("", "for",
+                  [](const H& h) { return std::string(h.is_predictive ? "drilled for later" : "fixes the guide"); });
+    return all;
 }
 
-ReportTable guide_checks(const analysis::PlannedGuide& guide) {
-    const cutting_guide::GuideSettings& set = guide.design.settings;
-    ReportTable table{{"measure", "value", "from"}, {}};
-    const auto add = [&](const char* what, std::string value, const char* source) {
-        table.rows.push_back({what, std::move(value), source});
-    };
-    add("mesh",
-        fmt::format("{} triangles, closed, one part, no self-intersection", guide.made.surface.triangles.size()),
-        "checked");
-    add("thinnest wall", guide.wall ? hundredths(guide.wall->thickness) + " mm" : "above 6 mm",
-        "checked; wanted 2 mm, remembered");
-    add("distance from the bone", hundredths(set.offset) + " mm",
-        "0.3 mm BoneReconstructionPlanner; 0.5 mm over periosteum");
-    add("faces on the bone that touch it", fmt::format("{:.0f} %", 100.0 * guide.seat.contact_share()), "checked");
-    add("play on the bone",
-        guide.seat.play >= cutting_guide::max_play
-            ? std::string("not held along one direction")
-            : fmt::format("{:.1f} mm, {:.1f}°", guide.seat.play / mm, guide.seat.play_angle / degree),
-        "at a gap of 0.3 mm, root of the mean square");
-    add("thickness of the base", hundredths(set.thickness) + " mm", "BoneReconstructionPlanner");
-    add("covers of the outline", fmt::format("{:.0f}°", set.wrap / degree), "BoneReconstructionPlanner");
-    add("blade", hundredths(set.blade) + " mm", "the plan's kerf, a placeholder");
-    add("clearance per side of the blade", hundredths(set.clearance) + " mm", "0.25 mm SLA, 0.4 mm FDM");
-    add("overhang when printed with the bone's side up", fmt::format("{:.0f} %", 100.0 * guide.overhang), "over 45°");
-    return table;
+const Fields<analysis::GuideWarning>& guide_warning_fields() {
+    using W = analysis::GuideWarning;
+    static const Fields<W> all = Fields<W>("warning of a guide").text("code", "", &W::code).text("text", "", &W::text);
+    return all;
+}
+
+const Fields<analysis::PlannedGuide>& seating_fields() {
+    using G = analysis::PlannedGuide;
+    static const Fields<G> all =
+        Fields<G>("seat of a guide on its bone")
+            .flag("free", "", [](const G& g) { return g.seat.is_path_free; })
+            .vector("removal", "", fixed(4), [](const G& g) { return glm::normalize(g.design.removal); })
+            .number("min_distance_mm", "", from_si(2, "mm"), [](const G& g) { return g.seat.min_distance; })
+            .number("offset_mm", "", from_si(2, "mm"), [](const G& g) { return g.design.settings.offset; });
+    return all;
+}
+
+bool is_held(const analysis::PlannedGuide& g) { return g.seat.play < cutting_guide::max_play; }
+
+const Fields<analysis::PlannedGuide>& seat_play_fields() {
+    using G = analysis::PlannedGuide;
+    static const Fields<G> all =
+        Fields<G>("play of a guide on its bone, at a gap of 0.3 mm")
+            .number("mm", "", from_si(1, "mm"), [](const G& g) { return g.seat.play; })
+            .number("deg", "", from_si(1, "°"), [](const G& g) { return g.seat.play_angle; })
+            .vector("direction", "", fixed(3), [](const G& g) { return g.seat.play_direction; })
+            .flag("is_held", "", is_held);
+    return all;
+}
+
+std::optional<double> greatest_play(const analysis::PlannedGuide& g) {
+    std::optional<double> play;
+    for (const cutting_guide::MadeSlot& slot : g.made.slots)
+        if (slot.play) play = std::max(play.value_or(0.0), *slot.play);
+    return play;
+}
+
+std::vector<FittedSlot> slots_of(const analysis::PlannedGuide& g) {
+    std::vector<FittedSlot> all;
+    for (std::size_t n = 0; n < g.made.slots.size(); ++n) all.push_back({&g.made.slots[n], &g.refits[n]});
+    return all;
+}
+
+struct SourcedValue {
+    std::string measure, value, from;
+};
+
+const Fields<SourcedValue>& sourced_fields() {
+    static const Fields<SourcedValue> all = Fields<SourcedValue>("value and its source")
+                                                .text("", "measure", &SourcedValue::measure)
+                                                .text("", "value", &SourcedValue::value)
+                                                .text("", "from", &SourcedValue::from);
+    return all;
+}
+
+/// Sizes of the design, with their sources.
+std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
+    const cutting_guide::GuideSettings& set = g.design.settings;
+    const auto in_mm = [](double metres) { return fmt::format("{:.2f} mm", metres / mm); };
+    return {{"distance from the bone", in_mm(set.offset), "0.3 mm BoneReconstructionPlanner; 0.5 mm over periosteum"},
+            {"thickness of the base", in_mm(set.thickness), "BoneReconstructionPlanner"},
+            {"covers of the outline", fmt::format("{:.0f}°", set.wrap / degree), "BoneReconstructionPlanner"},
+            {"blade", in_mm(set.blade), "the plan's kerf, a placeholder"},
+            {"clearance per side of the blade", in_mm(set.clearance), "0.25 mm SLA, 0.4 mm FDM"}};
+}
+
+const Fields<analysis::PlannedGuide>& planned_fields() {
+    using G = analysis::PlannedGuide;
+    static const Fields<G> all =
+        Fields<G>("guide for the cuts of a plan")
+            .remark([](const G&) {
+                return "For research, not a medical device. The wall of each slot on the kept side lies on the plan: a "
+                       "blade that is held against it cuts on plan.";
+            })
+            .warnings("",
+                      [](const G& g) {
+                          std::vector<std::string> texts;
+                          for (const analysis::GuideWarning& w : g.warnings) texts.push_back(w.text);
+                          return texts;
+                      })
+            .pictures(guide_pictures)
+            .figure(
+                "to scale, widths as measured in the mesh", [](const G&) { return true; }, guide_drawing)
+            .text("bone", "guide for the", [](const G& g) { return std::string(analysis::name_of(g.bone)); })
+            .flag("closed", "closed", [](const G& g) { return g.topology.is_watertight(); })
+            .integer("parts", "parts", [](const G& g) { return g.topology.components; })
+            .integer("triangles", "triangles", [](const G& g) { return g.made.surface.triangles.size(); })
+            .number("volume_mm3", "volume", from_si(0, "mm³"), &G::volume)
+            .number("wall_min_mm", "thinnest wall (wanted 2 mm, remembered)", from_si(2, "mm"),
+                    [](const G& g) { return g.wall ? std::optional(g.wall->thickness) : std::nullopt; })
+            .text("", "thinnest wall", [](const G& g) { return std::string(g.wall ? "" : "above 6 mm"); })
+            .child("seating", "", seating_fields(), [](const G& g) -> const G& { return g; })
+            .rows("slots", "slots", slot_fields(), slots_of)
+            .rows("holes", "holes", hole_fields(), [](const G& g) -> const auto& { return g.made.holes; })
+            .number("play_deg", "", from_si(1, "°"), greatest_play)
+            .child("seat_play", "", seat_play_fields(), [](const G& g) -> const G& { return g; })
+            .text("", "play on the bone at a gap of 0.3 mm, root mean square",
+                  [](const G& g) {
+                      return is_held(g)
+                                 ? fmt::format("{:.1f} mm, {:.1f}°", g.seat.play / mm, g.seat.play_angle / degree)
+                                 : std::string("not held along one direction");
+                  })
+            .number("contact_share", "faces on the bone that touch it", fixed(0, "%", "1"),
+                    [](const G& g) { return g.seat.contact_share(); })
+            .number("overhang_share", "overhang over 45° when printed with the bone's side up", fixed(0, "%", "1"),
+                    &G::overhang)
+            .rows("", "sizes", sourced_fields(), sizes_of)
+            .rows("warnings", "", guide_warning_fields(), &G::warnings);
+    return all;
 }
 
 }  // namespace
@@ -124,23 +222,18 @@ std::vector<render::LabelledPicture> guide_pictures(const analysis::PlannedGuide
             render::labelled_picture(alone, glm::normalize(z + 0.3 * x - 0.2 * y), "The side of the bone")};
 }
 
-std::vector<ReportBlock> guide_blocks(const analysis::PlannedGuide& guide) {
-    std::vector<ReportBlock> blocks{
-        Heading{fmt::format("Guide for the {}", analysis::name_of(guide.bone))},
-        Paragraph{
-            "For research, not a medical device. The wall of each slot on the kept side lies on the plan: a blade "
-            "that is held against it cuts on plan."}};
-    if (!guide.warnings.empty()) {
-        ReportList list{{}, true};
-        for (const analysis::GuideWarning& w : guide.warnings) list.items.push_back(w.text);
-        blocks.push_back(std::move(list));
-    }
-    blocks.push_back(PictureGrid{guide_pictures(guide)});
-    blocks.push_back(Drawing{guide_drawing(guide), "To scale. Widths are measured in the mesh."});
-    blocks.push_back(guide_slots(guide));
-    if (!guide.made.holes.empty()) blocks.push_back(guide_holes(guide));
-    blocks.push_back(guide_checks(guide));
-    return blocks;
+const Fields<MadeGuideFiles>& guide_fields() {
+    using M = MadeGuideFiles;
+    static const Fields<M> all =
+        Fields<M>("guide for the cuts of a plan, and its files")
+            .titled([](const M& m) { return m.plan; })
+            .part(planned_fields(), [](const M& m) -> const analysis::PlannedGuide& { return *m.guide; })
+            .text("file", "file", &M::file)
+            .text("task", "task to saw in it",
+                  [](const M& m) { return m.task.empty() ? std::nullopt : std::optional(m.task); })
+            .omitted()
+            .text("", "note", [](const M&) { return std::string(research_note); });
+    return all;
 }
 
 }  // namespace tactus::report

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "tools/analysis/cutting_guide/plan_guide.hpp"
-#include "tools/report/blocks/report_block.hpp"
+#include "tools/report/result/fields.hpp"
 
+#include <string>
 #include <vector>
 
 namespace tactus::report {
@@ -13,7 +14,13 @@ namespace tactus::report {
 /// pictures cannot be made.
 std::vector<render::LabelledPicture> guide_pictures(const analysis::PlannedGuide& guide);
 
-/// Pictures, a drawing with dimensions, and tables of the slots with their letters, the holes, the checks and where each number is from.
-std::vector<ReportBlock> guide_blocks(const analysis::PlannedGuide& guide);
+/// A guide with the files that were written of it; `task`: "" without one.
+struct MadeGuideFiles {
+    const analysis::PlannedGuide* guide;
+    std::string plan, file, task;
+};
+
+/// Slots with their letters, holes, checks and where each number is from; pictures on pages.
+const Fields<MadeGuideFiles>& guide_fields();
 
 }  // namespace tactus::report

@@ -2,12 +2,11 @@
 #include "tools/report/plan/colour_bar.hpp"
 
 #include <cstdint>
-#include <utility>
 
 namespace tactus::report {
 
-Drawing colour_bar(const std::function<Vec3(double share)>& colour, const std::string& least, const std::string& most,
-                   const std::string& caption) {
+display::Figure colour_bar(const std::function<Vec3(double share)>& colour, const std::string& least,
+                           const std::string& most) {
     constexpr double left = 190.0, width = 180.0;
     constexpr int steps = 90;
     display::Figure figure(560.0, 26.0);
@@ -19,7 +18,7 @@ Drawing colour_bar(const std::function<Vec3(double share)>& colour, const std::s
     }
     figure.text({left - 8.0, 17.0}, least, 12.0, {}, display::TextAnchor::end);
     figure.text({left + width + 8.0, 17.0}, most, 12.0);
-    return {std::move(figure), caption};
+    return figure;
 }
 
 }  // namespace tactus::report

@@ -2,7 +2,7 @@
 // A bar that shows which colour stands for which value.
 #pragma once
 
-#include "tools/report/blocks/report_block.hpp"
+#include "devices/display/figure.hpp"
 
 #include <functional>
 #include <string>
@@ -10,7 +10,7 @@
 namespace tactus::report {
 
 /// `colour`: sRGB from 0 to 1, of a share from 0 to 1; `least` and `most` stand at the ends.
-Drawing colour_bar(const std::function<Vec3(double share)>& colour, const std::string& least, const std::string& most,
-                   const std::string& caption);
+display::Figure colour_bar(const std::function<Vec3(double share)>& colour, const std::string& least,
+                           const std::string& most);
 
 }  // namespace tactus::report

@@ -145,6 +145,13 @@ public:
             std::move(key), "", [] { return schema_of_list(schema_of_number()); },
             [read](const T& of) -> ResultEntry::Series { return std::invoke(read, of); });
     }
+    /// A series of points or of the rows of a matrix, each a list.
+    template <class Read>
+    Fields& points(std::string key, Read read) {
+        return add(
+            std::move(key), "", [] { return schema_of_list(schema_of_list(schema_of_number())); },
+            [read](const T& of) -> ResultEntry::Series { return std::invoke(read, of); });
+    }
     /// `draw`: a display::Figure of the struct and, if it has several, of a style; called when a format shows it, if `has` is true. The struct must live until then.
     template <class Has, class Draw>
     Fields& figure(std::string name, Has has, Draw draw) {
@@ -182,6 +189,13 @@ public:
         return add(
             "", std::move(name), [] { return file::Json(); },
             [read](const T& of) -> ResultEntry::Rows { return std::invoke(read, of); });
+    }
+    /// Sections whose content depends on the value, printed only. `read`: a ResultEntry::Children.
+    template <class Read>
+    Fields& sections(std::string name, Read read) {
+        return add(
+            "", std::move(name), [] { return file::Json(); },
+            [read](const T& of) -> ResultEntry::Children { return std::invoke(read, of); });
     }
     /// An object whose members depend on the value: `read` returns pairs of a key and an optional double.
     template <class Read>
@@ -248,10 +262,16 @@ public:
             if (field.where)
                 made.where = [read, inner = field.where](const T& of) { return inner(std::invoke(read, of)); };
             made.is_omitted = field.is_omitted;
+            made.remark = field.remark;
             fields_.push_back(std::move(made));
         }
         if (!title_ && of_part.title_)
             title_ = [read, inner = of_part.title_](const T& of) { return inner(std::invoke(read, of)); };
+        return *this;
+    }
+    /// Explains the last field, a table, on pages.
+    Fields& explained(std::string remark) {
+        fields_.back().remark = std::move(remark);
         return *this;
     }
     /// Severity of the last field.
@@ -292,12 +312,14 @@ public:
     /// Views of the value live as long as it does.
     Result of(const T& value) const {
         if (other_ && is_other_(value)) return other_->of(value);
-        Result result{title_ ? title_(value) : std::string(), {}, page_title_ ? page_title_(value) : std::string(),
+        Result result{title_ ? title_(value) : std::string(),
+                      {},
+                      page_title_ ? page_title_(value) : std::string(),
                       mark_ ? mark_(value) : std::nullopt};
         for (const Field& field : fields_)
             result.entries.push_back({field.key, field.name, field.is_omitted,
                                       field.severity ? field.severity(value) : Severity::none, field.read(value),
-                                      field.where ? field.where(value) : Where::everywhere});
+                                      field.where ? field.where(value) : Where::everywhere, field.remark});
         return result;
     }
     file::Json schema() const {
@@ -337,6 +359,7 @@ private:
         std::function<Severity(const T&)> severity{};
         std::function<Where(const T&)> where{};
         bool is_omitted = false;
+        std::string remark{};
     };
 
     template <class Read>

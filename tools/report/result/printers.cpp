@@ -124,7 +124,7 @@ Cells cells_of(const ResultEntry::Rows& table) {
         cells.are_numbers.push_back(is_number);
         for (std::size_t n = 0; n < entries.size(); ++n) {
             std::string text = entries[n] ? shown(*entries[n]) : "–";
-            if (in_head && is_number) {
+            if (in_head) {
                 const std::string ending = unit == "°" ? std::string(unit) : " " + std::string(unit);
                 for (std::size_t at = 0; (at = text.find(ending, at)) != std::string::npos;)
                     text.erase(at, ending.size());
@@ -197,7 +197,14 @@ Json value_json(const ResultEntry& entry) {
                  [](const ResultEntry::Remark&) { return Json(); },
                  [](const ResultEntry::Series& s) {
                      Json list = Json::array();
-                     for (std::size_t n = 0; n < s.size; ++n) list.push_back(number_json(s.at(n)));
+                     if (s.columns == 0)
+                         for (std::size_t n = 0; n < s.size; ++n) list.push_back(number_json(s.at(n)));
+                     else
+                         for (std::size_t row = 0; row < s.size; row += s.columns) {
+                             list.push_back(Json::array());
+                             for (std::size_t n = row; n < row + s.columns; ++n)
+                                 list.back().push_back(number_json(s.at(n)));
+                         }
                      return list;
                  },
                  [](const ResultEntry::Picture&) { return Json(); },
@@ -216,20 +223,29 @@ Json value_json(const ResultEntry& entry) {
         entry.value);
 }
 
+std::string capitalised(std::string text) {
+    if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
+        text.front() = static_cast<char>(text.front() - 32);
+    return text;
+}
+
 /// `title`: of the page, which is no heading again.
 void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, const std::string& title) {
     ReportList warnings{{}, true};
     ReportTable values{{"value", ""}, {}};
     for (const ResultEntry& entry : result.entries)
         std::ranges::copy(warnings_of(entry, Medium::page), std::back_inserter(warnings.items));
-    if (!warnings.items.empty()) out.emplace_back(std::move(warnings));
+    if (!warnings.items.empty()) {
+        out.emplace_back(Heading{"Warnings", true, depth});
+        out.emplace_back(std::move(warnings));
+    }
     for (const ResultEntry& entry : result.entries) {
         const auto* remark = as<ResultEntry::Remark>(entry);
         if (remark && !remark->text.empty()) out.emplace_back(Paragraph{remark->text});
         if (const auto* picture = as<ResultEntry::Picture>(entry); picture && picture->draw)
             out.emplace_back(Drawing{picture->draw(screen_style), entry.name});
         if (const auto* pictures = as<ResultEntry::Pictures>(entry); pictures && pictures->make)
-            out.emplace_back(PictureGrid{pictures->make()});
+            if (auto made = pictures->make(); !made.empty()) out.emplace_back(PictureGrid{std::move(made)});
     }
     for (const ResultEntry& entry : result.entries)
         if (is_line(entry, Medium::page) && !section_of_texts(entry))
@@ -239,7 +255,7 @@ void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, 
             }
     if (!values.rows.empty()) out.emplace_back(std::move(values));
     const auto head = [&](const std::string& text) {
-        if (text != title) out.emplace_back(Heading{text, false, depth});
+        if (text != title) out.emplace_back(Heading{capitalised(text), false, depth});
     };
     for (const ResultEntry& entry : result.entries) {
         if (!is_printed(entry, Medium::page) || is_missing(entry)) continue;
@@ -249,6 +265,7 @@ void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, 
         } else if (const auto* rows = as<ResultEntry::Rows>(entry)) {
             Cells cells = cells_of(*rows);
             head(entry.name);
+            if (!entry.remark.empty()) out.emplace_back(Paragraph{entry.remark});
             out.emplace_back(ReportTable{std::move(cells.head), std::move(cells.rows), std::move(cells.marks),
                                          std::move(cells.warnings)});
         } else if (const auto* children = as<ResultEntry::Children>(entry)) {
@@ -267,6 +284,15 @@ std::string scalar_csv(const Json& json) {
                                     : json.dump();
 }
 
+/// A line for each value of a list, of lists too.
+void add_csv(std::string& out, const Json& value, const std::string& path, const std::string& unit) {
+    if (!value.is_array()) {
+        out += fmt::format("{},{},{}\n", table::csv_field(path), scalar_csv(value), unit);
+        return;
+    }
+    for (std::size_t n = 0; n < value.size(); ++n) add_csv(out, value[n], fmt::format("{}.{}", path, n), unit);
+}
+
 void add_csv(std::string& out, const Result& result, const std::string& above) {
     for (const ResultEntry& entry : result.entries) {
         if (entry.key.empty() || (entry.is_omitted && is_missing(entry))) continue;
@@ -278,15 +304,7 @@ void add_csv(std::string& out, const Result& result, const std::string& above) {
         else if (const auto* children = as<ResultEntry::Children>(entry); children && children->is_list)
             each(children->results);
         else if (children && !children->results.empty()) add_csv(out, children->results.front(), path + ".");
-        else {
-            const Json value = value_json(entry);
-            const std::string unit = table::csv_field(std::string(unit_of_value(entry)));
-            if (value.is_array())
-                for (std::size_t n = 0; n < value.size(); ++n)
-                    out += fmt::format("{},{},{}\n", table::csv_field(fmt::format("{}.{}", path, n)),
-                                       scalar_csv(value[n]), unit);
-            else out += fmt::format("{},{},{}\n", table::csv_field(path), scalar_csv(value), unit);
-        }
+        else add_csv(out, value_json(entry), path, table::csv_field(std::string(unit_of_value(entry))));
     }
 }
 

@@ -94,11 +94,19 @@ const ResultEntry* Result::find(std::string_view key) const {
     return found == entries.end() ? nullptr : &*found;
 }
 
+ResultEntry::Series series_of(const std::vector<Vec3>& points, double unit) {
+    return {3 * points.size(), [&points, unit](std::size_t n) { return points[n / 3][static_cast<int>(n % 3)] / unit; },
+            3};
+}
+
 void settle_pictures(Result& result, bool keeps_pictures, const FigureStyle& style) {
     for (ResultEntry& entry : result.entries) {
         if (auto* picture = std::get_if<ResultEntry::Picture>(&entry.value); picture && picture->draw) {
             if (!keeps_pictures) picture->draw = nullptr;
             else picture->draw = [drawn = picture->draw(style)](const FigureStyle&) { return drawn; };
+        } else if (auto* pictures = std::get_if<ResultEntry::Pictures>(&entry.value); pictures && pictures->make) {
+            if (!keeps_pictures) pictures->make = nullptr;
+            else pictures->make = [made = pictures->make()] { return made; };
         } else if (auto* children = std::get_if<ResultEntry::Children>(&entry.value)) {
             for (Result& one : children->results) settle_pictures(one, keeps_pictures, style);
         }

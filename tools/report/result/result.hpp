@@ -110,6 +110,7 @@ struct ResultEntry {
     struct Series {
         std::size_t size = 0;
         std::function<double(std::size_t)> at{};
+        std::size_t columns = 0;  ///< of points or a matrix, whose rows are lists; 0: one list
     };
     /// Drawn when a format shows it.
     struct Picture {
@@ -136,6 +137,7 @@ struct ResultEntry {
                  Children>
         value;
     Where where = Where::everywhere;
+    std::string remark{};  ///< of a table: a paragraph of pages that explains it
 };
 
 struct Result {
@@ -146,6 +148,9 @@ struct Result {
 
     const ResultEntry* find(std::string_view key) const;
 };
+
+/// Coordinates of points in a unit (given in SI), a list for each point. The points must live as long as the series.
+ResultEntry::Series series_of(const std::vector<Vec3>& points, double unit);
 
 /// Draws the pictures now in this style, or drops them: what was analysed need not live any longer, if it has no series.
 void settle_pictures(Result& result, bool keeps_pictures, const FigureStyle& style = screen_style);

@@ -7,7 +7,8 @@
 #include "tools/analysis/plan/plan_export.hpp"
 #include "tools/analysis/plan/plan_matching.hpp"
 #include "tools/counted.hpp"
-#include "tools/report/plan/plan_page.hpp"
+#include "tools/report/plan/plan_result.hpp"
+#include "tools/report/result/printers.hpp"
 #include "tools/window/document/case_run.hpp"
 
 #include <fmt/format.h>
@@ -54,13 +55,9 @@ std::string made(CaseRun::Study what, const plan::CasePlan& plan, const fs::path
         case CaseRun::Study::gaps: return gaps_of(plan, folder);
         case CaseRun::Study::healthy: return healthy_of(plan, folder);
         case CaseRun::Study::report: {
-            std::vector<analysis::CaseFragment> fragments = analysis::load_fragments(plan, folder);
-            auto residuals = analysis::healthy_residuals(plan::state_of(plan), folder, fragments);
             const fs::path page = folder / "case.html";
-            const auto healthy = analysis::healthy_side(plan::state_of(plan), folder);
             file::write_whole_file(
-                page, report::plan_page(plan, analysis::case_warnings(plan, folder).all, std::move(fragments),
-                                        std::move(residuals), healthy ? &*healthy : nullptr));
+                page, report::html_of(report::plan_fields().of(report::ShownPlan::reported(plan, folder))));
             return fmt::format("report: {}", page.string());
         }
         case CaseRun::Study::files: {

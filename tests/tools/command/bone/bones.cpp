@@ -4,6 +4,7 @@
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -72,7 +73,8 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
                                      {"two.vdb", "bone"}}) {
         const json found = folder.answer("info " + folder / file + " --json -o " + folder / "picture.png");
         INFO(found.dump(2));
-        CHECK(found.size() == std::size(keys));
+        CHECK(found.size() == std::size(keys) + 1);  // its version
+        CHECK(test::broken_schema(folder, "info", found) == "");
         for (const char* key : keys) CHECK(found.contains(key));
         CHECK(found["kind"] == kind);
         CHECK(found["frame"] == "LPS");
@@ -106,6 +108,8 @@ TEST_CASE("a label map goes in and comes out: import, load by name, export, impo
     const json one = folder.answer("export " + folder / "two.vdb --bone label_2 --json -o " + folder / "b.ply");
     CHECK(one["volume_mm3"].get<double>() == Approx(ball_mm3(4.0)).epsilon(0.04));
     const json again = folder.answer("import " + folder / "b.ply --json -o " + folder / "b.vdb");
+    CHECK(test::broken_schema(folder, "import", made) == "");
+    CHECK(test::broken_schema(folder, "import", again) == "");
     CHECK(again["bone_volume_mm3"].get<double>() == Approx(one["volume_mm3"].get<double>()).epsilon(0.02));
     for (const char* refused : {"two.vdb -o x.obj", "two.vdb --bone label_7 -o x.stl", "absent.vdb -o x.stl"}) {
         const std::string line = "export " + folder / refused;

@@ -63,8 +63,7 @@ TEST_CASE("import takes the threshold that info suggests, keeps the volume that 
           Approx(info["components"][0]["volume_mm3"].get<double>()).epsilon(1e-9));
     CHECK(made["hu"] == info["hu"]);
     const std::string said = folder.tactus("import " + ct + " -o " + out).out;
-    CHECK_THAT(said, ContainsSubstring(
-                         fmt::format("threshold {:g} HU (suggested", info["suggested_threshold"].get<double>())));
+    CHECK_THAT(said, ContainsSubstring(fmt::format("  {:g} HU (suggested", info["suggested_threshold"].get<double>())));
     CHECK_THAT(said, ContainsSubstring("the mask of the scan holds"));
     // One word for one thing: the HU are calibrated or masked, the density is never.
     CHECK_THAT(said, !ContainsSubstring("uncalibrated"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verdict of 'register': the right pose, several poses that fit as well, or none.
 #include "tests/support/catch.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <fmt/format.h>
@@ -65,6 +66,7 @@ TEST_CASE("register finds a bone that was turned by 90 degrees, names rival pose
     CHECK(fit.code == 0);
     const json found = json::parse(fit.out);
     CHECK(found["verdict"] == "fit");
+    CHECK(test::broken_schema(folder, "register", found) == "");
     // The origin of the bar goes to (25, -8, 12), and x to y.
     const json& pose = found["pose"];
     INFO(pose.dump());
@@ -78,4 +80,5 @@ TEST_CASE("register finds a bone that was turned by 90 degrees, names rival pose
     const json several = json::parse(rivals.out);
     CHECK(several["verdict"] == "ambiguous");
     CHECK_FALSE(several["rivals"].empty());
+    CHECK(test::broken_schema(folder, "register", several) == "");
 }

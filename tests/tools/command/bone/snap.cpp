@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
 #include "tests/tools/box_stl.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/plan_pose.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -72,6 +73,7 @@ TEST_CASE("halves that touch in one scan are not called a fit where the scan has
     CHECK(alone.code == 1);
     const json fit = json::parse(alone.out);
     CHECK(fit["verdict"] == "ambiguous");
+    CHECK(tactus::test::broken_schema(folder, "snap", fit) == "");
     CHECK(fit["as_scanned"] == true);
     CHECK(fit["moved"]["distance_mm"].get<double>() == Approx(std::sqrt(5.0)).margin(0.1));
     CHECK(folder.tactus("snap " + halves).out.find("only reproduces the scanned position") != std::string::npos);

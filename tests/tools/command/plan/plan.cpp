@@ -8,6 +8,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
 #include "tests/tools/box_stl.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/plan_pose.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -188,7 +189,7 @@ TEST_CASE("a name with blanks is one name in every verb of a plan", "[slow]") {
     CHECK(json::parse(run("show", "--json").out)["groups"][0]["name"] == "group_1");
     run("remove", right);
     for (const char* verb : {"lock", "unlock", "hide", "unhide"}) run(verb, left);
-    CHECK(json::parse(run("gap", left + " " + right + " --json").out)[0]["fragments"] ==
+    CHECK(json::parse(run("gap", left + " " + right + " --json").out)["pairs"][0]["fragments"] ==
           json::array({"left part", "right part"}));
     run("repaint", right + " " + boxes.file("b.stl"));
     run("undo", "");
@@ -228,6 +229,7 @@ TEST_CASE("broken bone is put together by a plan, measured, and written up on on
     const Outcome snapped = folder.tactus("plan snap " + plan + " fragment_02 --json");
     INFO(snapped.out << snapped.err);
     REQUIRE(snapped.code == 0);
+    CHECK(test::broken_schema(folder, "plan-snap", json::parse(snapped.out)) == "");
     const json state = json::parse(folder.tactus("plan show " + plan + " --json").out);
     const json& placed = state["fragments"][1];
     CHECK(placed["fit"]["partner"] == "fragment_01");
@@ -237,7 +239,7 @@ TEST_CASE("broken bone is put together by a plan, measured, and written up on on
         const Vec3 at = wanted.inverse().apply(corner * mm);
         CHECK(glm::length(found.apply(at) - corner * mm) < 0.2 * mm);
     }
-    const json gaps = json::parse(folder.tactus("plan gap " + plan + " --json").out);
+    const json gaps = json::parse(folder.tactus("plan gap " + plan + " --json").out)["pairs"];
     REQUIRE(gaps.size() == 1);
     CHECK(gaps[0]["contact_mm2"].get<double>() > 100.0);
     CHECK(std::abs(gaps[0]["gap_median_mm"].get<double>()) < 0.15);

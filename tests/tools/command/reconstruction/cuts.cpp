@@ -2,6 +2,7 @@
 // tactus plan cuts: place by hand first, then derive the osteotomies.
 #include "tests/support/catch.hpp"
 #include "tests/tools/command/reconstruction/jaw_case.hpp"
+#include "tests/tools/json_schema.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -47,6 +48,7 @@ TEST_CASE("cuts follow pieces that were placed by hand, as an alternative whose 
     INFO(done.out << done.err);
     REQUIRE(done.code == 0);
     const json cuts = json::parse(done.out);
+    CHECK(test::broken_schema(made.folder, "plan-cuts", cuts) == "");
     CHECK(cuts["alternative"] == "from-pieces");
     for (const json& segment : cuts["segments"]) {
         CHECK(segment["from_placed_mm"].get<double>() < 1e-6);
@@ -69,6 +71,7 @@ TEST_CASE("the cuts of a plan are those of the inputs that it was made of", "[sl
     INFO(listed.err);
     REQUIRE(listed.code == 0);
     const json cuts = json::parse(listed.out);
+    CHECK(test::broken_schema(made.folder, "plan-fibula", cuts) == "");
     CHECK(cuts == json::parse(made.folder.tactus("plan fibula " + inputs + " --json").out));
     // The planes of the donor, placed, are those of the jaw.
     const json &segment = cuts["segments"][0], &m = segment["donor_to_target"],
@@ -79,7 +82,7 @@ TEST_CASE("the cuts of a plan are those of the inputs that it was made of", "[sl
             sum += m[row][column].get<double>() * p[column].get<double>();
         CHECK(sum == Approx(test::at(0.8)[row].get<double>()).margin(1e-6));
     }
-    CHECK_THAT(made.verb("cuts").out, ContainsSubstring("segment 1: "));
+    CHECK_THAT(made.verb("cuts").out, ContainsSubstring("segment 1, at plane 1 of the jaw"));
 }
 
 TEST_CASE("cuts of pieces are refused with the next step where they are not defined", "[slow]") {

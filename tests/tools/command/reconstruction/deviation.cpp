@@ -2,6 +2,7 @@
 // Deviation of a reconstruction from the mirrored healthy side, or from the jaw of another person.
 #include "tests/support/catch.hpp"
 #include "tests/tools/command/reconstruction/jaw_case.hpp"
+#include "tests/tools/json_schema.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -67,9 +68,11 @@ TEST_CASE("segments deviate from the mirrored jaw as chords from their arc, and 
     CHECK(first["greatest"].get<double>() < 2.5 * sagitta);
     CHECK(first["rms"].get<double>() < first["greatest"].get<double>());
     CHECK(planned[0]["contour_mm"]["highest"].get<double>() < 7.0);
-    CHECK_THAT(made.verb("show").out, ContainsSubstring("segment-1: curve ") && ContainsSubstring("; contour "));
+    CHECK_THAT(made.verb("show").out, ContainsSubstring("curve, rms, mm") && ContainsSubstring("contour, rms, mm"));
     // 10 mm up, which is across the arch.
     const json shown = json::parse(made.verb("show", "--json").out);
+    CHECK(test::broken_schema(made.folder, "plan-show", shown) == "");
+    CHECK(test::broken_schema(made.folder, "plan-check", json::parse(made.verb("check", "--json").out)) == "");
     for (const json& fragment : shown["fragments"]) {
         if (fragment["name"] != "segment-1") continue;
         const json &p = fragment["pose"]["position_mm"], &q = fragment["pose"]["quaternion_wxyz"];

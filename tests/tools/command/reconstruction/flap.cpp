@@ -6,8 +6,10 @@
 #include "tests/support/skip.hpp"
 #include "tests/support/slicer_markups.hpp"
 #include "tests/tools/command/reconstruction/jaw_case.hpp"
+#include "tests/tools/json_schema.hpp"
 #include "tests/tools/pdf_text.hpp"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <nlohmann/json.hpp>
@@ -128,6 +130,9 @@ TEST_CASE("plan reach tells what the vessels do, and ranks eight candidates", "[
     REQUIRE(made.run(made.whole()).code == 0);
     const json found = made.reach(" --rank");
     REQUIRE(found["reaches"].size() == 2);
+    CHECK(test::broken_schema(made.folder, "plan-reach", found) == "");
+    CHECK(test::broken_schema(made.folder, "plan-show",
+                              json::parse(made.folder.tactus("plan show " + made.plan + " --json").out)) == "");
     const json& artery = found["reaches"][0];
     CHECK(artery["site"] == "facial artery");
     CHECK(artery["free_mm"].get<double>() == Approx(0.89 * artery["in_situ_mm"].get<double>()));
@@ -271,7 +276,8 @@ TEST_CASE("a second reconstruction of a plan is an alternative with its own piec
         CHECK(cut["center"][axis].get<double>() == Approx(origin[axis].get<double>()).margin(1e-9));
 
     const fs::path page = made.folder.path / "case.html", pdf = made.folder.path / "case.pdf";
-    const test::Outcome reported = made.folder.tactus("plan report " + made.plan + " --pdf " + pdf.string());
+    const test::Outcome reported =
+        made.folder.tactus(fmt::format("plan report {} -o {} -o {}", made.plan, page.string(), pdf.string()));
     if (reported.err.find("OpenGL") != std::string::npos) return;
     INFO(reported.err);
     REQUIRE(reported.code == 0);

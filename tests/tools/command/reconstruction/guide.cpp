@@ -5,6 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
 #include "tests/tools/command/reconstruction/jaw_case.hpp"
+#include "tests/tools/json_schema.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -34,6 +35,7 @@ TEST_CASE("plan guide writes a closed guide with each slot on its osteotomy", "[
     INFO(done.err);
     REQUIRE(done.code == 0);
     const json guide = json::parse(done.out);
+    CHECK(test::broken_schema(made.folder, "plan-guide", guide) == "");
     CHECK(guide["closed"] == true);
     CHECK(guide["parts"] == 1);
     CHECK(guide["seating"]["free"] == true);

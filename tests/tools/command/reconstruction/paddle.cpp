@@ -2,6 +2,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/command/reconstruction/jaw_case.hpp"
+#include "tests/tools/json_schema.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -63,6 +64,7 @@ TEST_CASE("a paddle is placed behind the bone at its perforators, is a step that
     CHECK(found["paddle"]["at_mm"][2].get<double>() == Approx(-110.0).margin(1e-6));
     CHECK(found["defect_mm2"].get<double>() == Approx(std::numbers::pi * 150.0).epsilon(0.02));
     CHECK(found["coverage"].get<double>() > 0.99);
+    CHECK(test::broken_schema(made.folder, "plan-paddle", found) == "");
     REQUIRE(found["perforators"].size() == 1);
     CHECK(found["perforators"][0]["name"] == "middle");
     CHECK(found["unused_perforators"] == json{"knee"});

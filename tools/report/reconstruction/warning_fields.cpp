@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/report/reconstruction/warning_fields.hpp"
+
+namespace tactus::report {
+
+const Fields<analysis::CaseWarning>& case_warning_fields() {
+    using analysis::CaseWarning;
+    const auto if_any = [](std::string CaseWarning::* member) {
+        return [member](const CaseWarning& w) { return (w.*member).empty() ? std::nullopt : std::optional(w.*member); };
+    };
+    static const Fields<CaseWarning> all = Fields<CaseWarning>("warning of a plan")
+                                               .text("code", "", &CaseWarning::code)
+                                               .text("text", "", &CaseWarning::text)
+                                               .text("object", "", if_any(&CaseWarning::object))
+                                               .text("other", "", if_any(&CaseWarning::other))
+                                               .flag("fault", "", &CaseWarning::is_fault);
+    return all;
+}
+
+std::vector<std::string> texts_of(const std::vector<analysis::CaseWarning>& warnings, bool faults) {
+    std::vector<std::string> texts;
+    for (const analysis::CaseWarning& warning : warnings)
+        if (warning.is_fault == faults) texts.push_back(warning.text);
+    return texts;
+}
+
+}  // namespace tactus::report
