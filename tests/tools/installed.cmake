@@ -53,6 +53,18 @@ foreach(example embed-c embed-cpp)
   execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=TACTUS_LIBRARY ${SCRATCH}/${example}/${program}
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
+# C# calls the same library, where Mono is installed.
+find_program(MCS mcs)
+find_program(MONO mono)
+if(MCS AND MONO)
+  file(GLOB csharp ${EXAMPLES}/unity/*.cs)
+  execute_process(COMMAND ${MCS} -warnaserror -out:${SCRATCH}/unity.exe ${csharp} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=TACTUS_LIBRARY ${MONO} ${SCRATCH}/unity.exe OUTPUT_VARIABLE said
+                  COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT said MATCHES "did you mean 'stiffness'")
+    message(FATAL_ERROR "an error of a patch did not reach C#:\n${said}")
+  endif()
+endif()
 # Nodes from outside: an example, and the project that the command writes. They are built against the installed headers, checked by
 # the installed program, and run.
 unset(ENV{TACTUS_LIBRARY})
