@@ -57,6 +57,23 @@ TEST_CASE("sound beyond full scale is cut, NaN is silence, and both are counted"
     CHECK(std::get<double>(node.report().sections.at("node").at("clipped_samples")) == 3.0);
 }
 
+TEST_CASE("no sample exceeds the limit of an audio output, and its peak is reported as it was") {
+    NodeHarness node("audio_output");
+    node.set("full_scale", "10").set("limit", "0.25").feed<float>("signal", [](std::int64_t k) {
+        return k % 2 == 0 ? 2.0f : -8.0f;
+    });
+    node.prepare();
+    node.run(100, 3);
+    const auto samples = node.host.sounds.at(0)->values<float>();
+    REQUIRE(samples.size() == 100);
+    CHECK(samples[0] == 0.2f);
+    CHECK(samples[1] == -0.25f);
+    const auto& section = node.report().sections.at("node");
+    CHECK(std::get<double>(section.at("clipped_samples")) == 50.0);
+    CHECK(std::get<double>(section.at("samples")) == 100.0);
+    CHECK(std::get<double>(section.at("peak")) == Approx(0.8));
+}
+
 TEST_CASE("a probe tells least, greatest, mean and last of each column, and counts what is not finite") {
     test::HarnessOptions options = test::servo;
     NodeHarness number("probe", options);
