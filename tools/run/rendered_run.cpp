@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/run/rendered_run.hpp"
 
-#include "engine/run/engine.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/run/output_folder.hpp"
 #include "tools/run/results.hpp"
@@ -14,9 +13,12 @@
 
 namespace tactus::run {
 
-RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, const std::atomic<bool>& stop,
-                       const std::function<void(double done)>& progress) {
+namespace {
+
+RenderedRun render(const RunChoice& choice, compile::AssetCache& assets, observe::Observer* observer,
+                   const std::function<void(run::Engine&)>& drive) {
     run::EngineOptions options;
+    options.observer = observer;
     options.seconds = choice.seconds.value();
     compile::Schedule plan = load_plan(choice, assets);
     OutputFolder folder({choice.out, choice.overwrite});
@@ -29,10 +31,7 @@ RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, con
         if (!choice.record_values) options.take_values = run::TakeValues::none;
     }
     run::Engine engine(std::move(plan), options);
-    engine.render(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), [&](double done) {
-        if (stop) engine.stop();
-        progress(done);
-    });
+    drive(engine);
     RenderedRun run;
     run.seconds = std::min(options.seconds, engine.progress_seconds());
     engine.complete();
@@ -49,6 +48,26 @@ RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, con
     }
     run.faults = unrecovered(engine);
     return run;
+}
+
+}  // namespace
+
+RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, const std::atomic<bool>& stop,
+                       const std::function<void(double done)>& progress) {
+    return render(choice, assets, nullptr, [&](run::Engine& engine) {
+        engine.render(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), [&](double done) {
+            if (stop) engine.stop();
+            progress(done);
+        });
+    });
+}
+
+RenderedRun render_in_steps(const RunChoice& choice, compile::AssetCache& assets, observe::Observer* observer,
+                            const std::function<void(run::Engine&)>& drive) {
+    return render(choice, assets, observer, [&](run::Engine& engine) {
+        drive(engine);
+        engine.end_advance();
+    });
 }
 
 }  // namespace tactus::run

@@ -2,6 +2,7 @@
 // One offline run with its results and, on request, its take.
 #pragma once
 
+#include "engine/run/engine.hpp"
 #include "graph/compile/load_assets.hpp"
 #include "tools/run/run_choice.hpp"
 
@@ -23,5 +24,10 @@ struct RenderedRun {
 /// set. Throws Error.
 RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, const std::atomic<bool>& stop,
                        const std::function<void(double done)>& progress);
+
+/// The same in steps of the caller: `drive` calls Engine::advance and Engine::set, and the run ends where it has arrived.
+/// `observer` may be null.
+RenderedRun render_in_steps(const RunChoice& choice, compile::AssetCache& assets, observe::Observer* observer,
+                            const std::function<void(run::Engine&)>& drive);
 
 }  // namespace tactus::run
