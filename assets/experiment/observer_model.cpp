@@ -33,10 +33,11 @@ public:
     }
 
 private:
-    double level(const toml::node& node) const { return quantity(node, level_unit_, 1e-12, 1e12); }
+    double level(const toml::node& node) const { return quantity(node, level_unit_, -1e12, 1e12); }
 
     void read_observer(const toml::table& table) {
-        know(table, {"form", "threshold", "thresholds", "slope", "lapse", "false_alarms", "spread", "response_time"});
+        know(table, {"form", "threshold", "thresholds", "slope", "lapse", "false_alarms", "spread", "response_time",
+                     "match_spread", "match_lag"});
         model_.has_observer = true;
         SimulatedObserver& o = model_.observer;
         if (const auto* node = table.get("form")) {
@@ -53,6 +54,8 @@ private:
         if (const auto* node = table.get("lapse")) o.lapse = number(*node, 0.0, 0.5);
         if (const auto* node = table.get("false_alarms")) o.false_alarms = number(*node, 0.0, 0.9);
         if (const auto* node = table.get("spread")) o.spread = number(*node, 0.0, 2.0);
+        if (const auto* node = table.get("match_spread")) o.match_spread = number(*node, 0.0, 1e9);
+        if (const auto* node = table.get("match_lag")) o.match_lag = number(*node, -1e9, 1e9);
         if (const auto* node = table.get("response_time")) o.response_time = quantity(*node, "s", 0.01, 60.0);
     }
 

@@ -24,6 +24,9 @@ struct SimulatedObserver {
     double false_alarms = 0.1;  ///< of yes/no and same–different tasks
     double spread = 0.0;        ///< standard deviation of log10 of the threshold between subjects
     double response_time = 0.6; ///< median, s
+    /// Of adjustments, on the axis of the stimulus (log10, or level): standard deviation of the level that matches between
+    /// trials, and by how much the subject stops before it, coming from either end.
+    double match_spread = 0.0, match_lag = 0.0;
 };
 
 /// Factors on what a simulated hand does, in the conditions that have this level of this factor.
@@ -34,11 +37,11 @@ struct HandEffect {
 
 /// How a simulated hand does a task: the ideal movement, slower, with errors and late.
 struct SimulatedHand {
-    double error = 2e-3;        ///< standard deviation of each target on each axis, m
-    double lag = 0.0;           ///< s
-    double time = 1.0;          ///< factor on the duration of self-paced tasks
+    double error = 2e-3;  ///< standard deviation of each target on each axis, m
+    double lag = 0.0;  ///< s
+    double time = 1.0;  ///< factor on the duration of self-paced tasks
     double spread_time = 0.0, spread_error = 0.0;  ///< standard deviations of the logarithms between subjects
-    double trial_time = 0.0, trial_error = 0.0;    ///< and between trials of a subject
+    double trial_time = 0.0, trial_error = 0.0;  ///< and between trials of a subject
     std::vector<HandEffect> effects;
 };
 

@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -67,7 +69,10 @@ public:
             read_stimulus(as_table(need(root, "stimulus", "a table [stimulus]")));
             read_response(as_table(need(root, "response", "a table [response]")));
             read_method(as_table(need(root, "method", "a table [method]")));
-            if (const auto* node_ = root.get("catch_rate")) p.catch_rate = number(*node_, 0.0, 0.5);
+            if (const auto* node_ = root.get("catch_rate")) {
+                p.catch_rate = number(*node_, 0.0, 0.5);
+                if (p.is_adjustment() && p.catch_rate > 0.0) fail(*node_, "an adjustment has no catch trials");
+            }
         }
         read_order(root);
         if (const auto* node = root.get("comparison")) read_comparisons(*node);
@@ -119,11 +124,32 @@ private:
     }
 
     void read_limits(const toml::table& table) {
-        know(table, {"missed", "gap", "limited"});
+        know(table, {"missed", "gap", "limited", "sound"});
         Limits& limits = protocol_.limits;
+        if (const auto* node = table.get("sound")) {
+            if (const toml::table* outputs = node->as_table())
+                for (const auto& [output, level] : *outputs) read_sound_cap(std::string(output.str()), level);
+            else read_sound_cap({}, *node);
+        }
         if (const auto* node = table.get("missed")) limits.missed = number(*node, 0.0, 1.0);
         if (const auto* node = table.get("gap")) limits.gap = quantity(*node, "ms", 1e-4, 10.0);
         if (const auto* node = table.get("limited")) limits.limited = number(*node, 0.0, 1.0);
+    }
+
+    void read_sound_cap(const std::string& output, const toml::node& node) {
+        if (node.is_number()) {
+            protocol_.limits.sound.push_back({output, number(node, 1e-9, 1e9), false});
+            return;
+        }
+        const std::string text = word(node);
+        double level = 0.0;
+        int used = 0;
+        if (std::sscanf(text.c_str(), "%lf dBFS%n", &level, &used) != 1 || used != static_cast<int>(text.size()) ||
+            !(level >= -200.0 && level <= 0.0))
+            fail(node,
+                 "the loudest sample of an audio output is expected: \"-20 dBFS\", -200 to 0 dB of full scale, or a "
+                 "number in the unit of its signal");
+        protocol_.limits.sound.push_back({output, std::pow(10.0, level / 20.0), true});
     }
 
     void read_exclusion(const toml::table& table) {
@@ -212,10 +238,11 @@ private:
     void read_response(const toml::table& table) {
         know(table, {"kind", "names", "keys", "ports"});
         Response& response = protocol_.response;
-        const toml::node& kind = need(table, "kind", "kind = \"choice\", \"yes_no\" or \"same_different\"");
-        const std::string name = choice(kind, {"choice", "yes_no", "same_different"});
+        const toml::node& kind = need(table, "kind", "kind = \"choice\", \"yes_no\", \"same_different\" or \"adjust\"");
+        const std::string name = choice(kind, {"choice", "yes_no", "same_different", "adjust"});
         response.kind = name == "choice"   ? ResponseKind::choice
                         : name == "yes_no" ? ResponseKind::yes_no
+                        : name == "adjust" ? ResponseKind::adjust
                                            : ResponseKind::same_different;
         const std::size_t intervals = protocol_.stimulus->parameters.size();
         response.intervals = static_cast<int>(intervals);
@@ -223,7 +250,9 @@ private:
         if (response.kind == ResponseKind::choice && intervals < 2) fail(kind, "a choice needs at least two intervals");
         if (response.kind == ResponseKind::same_different && intervals != 2)
             fail(kind, "a same-different trial has two intervals");
-        const std::size_t answers = response.kind == ResponseKind::choice ? intervals : 2;
+        const std::size_t answers = response.kind == ResponseKind::choice   ? intervals
+                                    : response.kind == ResponseKind::adjust ? 3
+                                                                            : 2;
         const auto read = [&](const char* key, std::vector<std::string>& list) {
             if (const auto* node = table.get(key)) {
                 list = words(*node, answers, answers);
@@ -240,28 +269,46 @@ private:
         if (response.names.empty()) {
             if (response.kind == ResponseKind::yes_no) response.names = {"no", "yes"};
             else if (response.kind == ResponseKind::same_different) response.names = {"same", "different"};
+            else if (response.kind == ResponseKind::adjust) response.names = {"less", "more", "matches"};
             else
                 for (std::size_t i = 1; i <= answers; ++i) response.names.push_back(std::to_string(i));
         }
         if (response.keys.empty()) {
             if (response.kind == ResponseKind::yes_no) response.keys = {"n", "y"};
             else if (response.kind == ResponseKind::same_different) response.keys = {"s", "d"};
+            else if (response.kind == ResponseKind::adjust) response.keys = {"-", "+", "m"};
             else
                 for (std::size_t i = 1; i <= answers; ++i) response.keys.push_back(std::to_string(i));
         }
     }
 
     void read_method(const toml::table& table) {
-        know(table, {"kind", "trials", "levels", "form", "slopes", "lapse", "target", "rule", "down", "start",
-                     "step_up", "step_down", "reversals"});
         Method& method = protocol_.method;
         const Stimulus& stimulus = *protocol_.stimulus;
-        const toml::node& kind = need(table, "kind", "kind = \"quest_plus\", \"staircase\" or \"constant\"");
-        const std::string name = choice(kind, {"quest_plus", "staircase", "constant"});
+        const toml::node& kind =
+            need(table, "kind", "kind = \"quest_plus\", \"staircase\", \"constant\" or \"adjustment\"");
+        const std::string name = choice(kind, {"quest_plus", "staircase", "constant", "adjustment"});
         method.kind = name == "quest_plus"  ? Method::Kind::quest_plus
                       : name == "staircase" ? Method::Kind::staircase
-                                            : Method::Kind::constant;
+                      : name == "constant"  ? Method::Kind::constant
+                                            : Method::Kind::adjustment;
+        // A key of another method would have no effect.
+        std::vector<std::string> keys{"kind", "trials"};
+        const auto has = [&](const std::vector<std::string>& more) {
+            keys.insert(keys.end(), more.begin(), more.end());
+        };
+        if (method.kind == Method::Kind::adjustment) has({"starts", "step", "presentations"});
+        else has({"form", "slopes", "lapse", "target"});
+        if (method.kind == Method::Kind::constant) has({"levels"});
+        if (method.kind == Method::Kind::staircase) has({"rule", "down", "start", "step_up", "step_down", "reversals"});
+        know(table, keys);
+        if ((method.kind == Method::Kind::adjustment) != (protocol_.response.kind == ResponseKind::adjust))
+            fail(kind, "the method \"adjustment\" and the response \"adjust\" belong together");
         method.trials = whole(need(table, "trials", "trials = 60 of each block; constant: of each level"), 1, 10'000);
+        if (method.kind == Method::Kind::adjustment) {
+            read_adjustment(table);
+            return;
+        }
         if (const auto* node = table.get("form")) {
             const std::string form = choice(*node, {"weibull", "logistic", "normal"});
             method.form = form == "weibull"    ? psychophysics::Form::weibull
@@ -289,8 +336,28 @@ private:
                 method.levels.push_back(quantity(one, level_unit, stimulus.min, stimulus.max));
             if (std::ranges::adjacent_find(method.levels, std::greater_equal<>{}) != method.levels.end())
                 fail(levels, "levels must ascend");
+            for (const double level : method.levels)
+                if (std::abs(stimulus.presentable(level) - level) > 1e-9 * std::abs(level))
+                    fail(levels,
+                         fmt::format("{} is no multiple of the step of the stimulus, {}",
+                                     format_quantity(level, level_unit), format_quantity(stimulus.step, level_unit)));
         }
         if (method.kind == Method::Kind::staircase) read_rule(table, level_unit);
+    }
+
+    void read_adjustment(const toml::table& table) {
+        Method& method = protocol_.method;
+        const Stimulus& stimulus = *protocol_.stimulus;
+        if (method.trials % 2 != 0)
+            fail(*table.get("trials"), "half of the trials begin at each end of the range: their number must be even");
+        if (const auto* node = table.get("starts")) method.starts = number(*node, 0.0, 0.4);
+        const double range = stimulus.axis(stimulus.max) - stimulus.axis(stimulus.min);
+        method.step = 0.02 * range;
+        // On a log axis a step is a difference of log10, on a linear one a level.
+        if (const auto* node = table.get("step"))
+            method.step = stimulus.is_log ? number(*node, 1e-4, 0.5 * range)
+                                          : quantity(*node, stimulus.level_unit(), 1e-12, 0.5 * range);
+        if (const auto* node = table.get("presentations")) method.presentations = whole(*node, 2, 1000);
     }
 
     void read_rule(const toml::table& table, const std::string& level_unit) {
@@ -499,6 +566,13 @@ std::vector<std::vector<std::size_t>> read_order_table(const Protocol& protocol)
     return rows;
 }
 
+/// Number of different orders of the conditions; 1 for those that have none.
+std::size_t condition_rows(const Protocol& protocol) {
+    if (protocol.order == OrderKind::latin_square) return protocol.conditions.size();
+    if (protocol.order == OrderKind::williams) return statistics::williams(protocol.conditions.size()).size();
+    return 1;
+}
+
 }  // namespace
 
 double Stimulus::axis(double level) const { return is_log ? std::log10(level) : level; }
@@ -572,15 +646,15 @@ std::vector<std::size_t> task_order(const Protocol& protocol, std::size_t row) {
     if (protocol.order == OrderKind::co_location)
         return statistics::all_orders(3)[statistics::co_location_row(row).task_order];
     if (count == 0) return {};
-    // Rotated beside the conditions, so that neighbouring rows begin with other tasks.
-    return statistics::latin_square(count)[row % count];
+    // Rotated beside the conditions. Where both numbers of rows have a common divisor, each order of conditions would always meet
+    // the same orders of tasks: the rotation is shifted each time that all pairs so far have come once.
+    const std::size_t together = std::lcm(condition_rows(protocol), count);
+    return statistics::latin_square(count)[(row + row / together) % count];
 }
 
 std::string balance_warning(const Protocol& protocol, std::size_t subjects) {
-    std::size_t rows = 1;
-    if (protocol.order == OrderKind::latin_square) rows = protocol.conditions.size();
-    if (protocol.order == OrderKind::williams) rows = statistics::williams(protocol.conditions.size()).size();
-    if (protocol.order == OrderKind::co_location) rows = 16;
+    const std::size_t tasks = std::max<std::size_t>(protocol.tasks.size(), 1);
+    const std::size_t rows = protocol.order == OrderKind::co_location ? 16 : condition_rows(protocol) * tasks;
     if (subjects % rows == 0) return {};
     return fmt::format(
         "{} subjects do not fill the {} rows of the order equally often: conditions and order are not "

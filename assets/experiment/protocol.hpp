@@ -36,12 +36,12 @@ struct Window {
     double begin = 0.0, end = 0.0;  ///< s
 };
 
-enum class ResponseKind : std::uint8_t { yes_no, choice, same_different };
+enum class ResponseKind : std::uint8_t { yes_no, choice, same_different, adjust };
 
-/// Answers: which interval (choice), yes or no, same or different.
+/// Answers: which interval (choice), yes or no, same or different; adjust: less, more, and "it matches".
 struct Response {
     ResponseKind kind = ResponseKind::choice;
-    int intervals = 2;  ///< alternatives of a choice
+    int intervals = 2;  ///< alternatives of a choice; those of which one is adjusted
     std::vector<std::string> names;  ///< of the answers, as they are stored
     std::vector<std::string> keys;  ///< one character each
     std::vector<std::string> ports;  ///< bool outputs of the patch that answer instead: buttons, or a pose in a region
@@ -71,8 +71,11 @@ struct Stimulus {
 };
 
 struct Method {
-    enum class Kind : std::uint8_t { constant, staircase, quest_plus } kind = Kind::quest_plus;
-    int trials = 60;  ///< constant: of each level
+    enum class Kind : std::uint8_t { constant, staircase, quest_plus, adjustment } kind = Kind::quest_plus;
+    int trials = 60;  ///< constant: of each level; adjustment: half of them begin at each end
+    double starts = 0.2;  ///< adjustment: part of the range (axis) at each end within which a trial begins
+    double step = 0.0;  ///< adjustment: of one press, on the axis
+    int presentations = 20;  ///< adjustment: of a trial, then it ends without a match
     std::vector<double> levels;  ///< constant
     psychophysics::StaircaseRule rule;  ///< steps on the axis of the stimulus
     psychophysics::Form form = psychophysics::Form::weibull;
@@ -86,8 +89,16 @@ struct Practice {
     int max_trials = 20;
 };
 
-/// Limits of one trial's timing and force, and rules of exclusion.
+/// The loudest that an audio output may play.
+struct SoundCap {
+    std::string output;  ///< name of its node; empty: all
+    double level = 1.0;  ///< fraction of full scale, or a value of the signal
+    bool is_of_full_scale = true;
+};
+
+/// Limits of one trial's timing, force and sound, and rules of exclusion.
 struct Limits {
+    std::vector<SoundCap> sound;  ///< empty: full scale
     double missed = 0.001;  ///< fraction of ticks
     double gap = 5e-3;  ///< s
     double limited = 0.01;  ///< fraction of the time
@@ -163,6 +174,13 @@ struct Protocol {
         return stimulus->is_relative ? standard(condition) * (1.0 + level) : standard(condition) + level;
     }
     bool is_psychophysics() const { return tasks.empty(); }
+    bool is_adjustment() const { return is_psychophysics() && method.kind == Method::Kind::adjustment; }
+    /// Longest duration of a trial of psychophysics, s.
+    double trial_length() const { return is_adjustment() ? length * method.presentations : length; }
+    /// Whether a trial of an adjustment that begins at this level begins above the middle of the range.
+    bool begins_above(double level) const {
+        return stimulus->axis(level) > 0.5 * (stimulus->axis(stimulus->min) + stimulus->axis(stimulus->max));
+    }
     /// The protocol, patches, targets and order tables: what must not change once a subject took part.
     std::vector<std::filesystem::path> files() const;
 };

@@ -48,6 +48,11 @@ Json json_of(const TrialRecord& t) {
                      {"answer", t.answer},
                      {"correct", t.is_correct},
                      {"response_time_s", optional_json(t.response_time)}});
+        if (t.match || !t.turns.empty()) {
+            json["match"] = optional_json(t.match);
+            json["turns"] = Json::array();
+            for (const Turn& turn : t.turns) json["turns"].push_back(Json::array({turn.time, turn.level}));
+        }
     } else {
         json["measures"] = t.measures;
         json["finished"] = t.is_finished;
@@ -55,6 +60,7 @@ Json json_of(const TrialRecord& t) {
     json.update({{"missed", t.missed},
                  {"gap_s", t.gap},
                  {"limited", t.limited},
+                 {"sound_limited", t.sound_limited},
                  {"marked", t.marked},
                  {"simulated", t.is_simulated},
                  {"rehearsal", t.is_rehearsal}});
@@ -85,6 +91,9 @@ TrialRecord trial_of(const Json& json) {
         t.answer = json["answer"].get<int>();
         t.is_correct = json["correct"].get<bool>();
         t.response_time = optional_of(json, "response_time_s");
+        t.match = optional_of(json, "match");
+        if (const Json* turns = json.find("turns"))
+            for (const Json& turn : *turns) t.turns.push_back({turn[0].get<double>(), turn[1].get<double>()});
     } else {
         // A measure that is not a number was written as null.
         for (const auto& [name, value] : json["measures"].items())
@@ -94,6 +103,7 @@ TrialRecord trial_of(const Json& json) {
     t.missed = json["missed"].get<double>();
     t.gap = json["gap_s"].get<double>();
     t.limited = json["limited"].get<double>();
+    t.sound_limited = json.value("sound_limited", 0.0);  // trials of before it was noted have none
     t.marked = json["marked"].get<std::string>();
     t.is_simulated = json["simulated"].get<bool>();
     t.is_rehearsal = json["rehearsal"].get<bool>();
@@ -127,9 +137,17 @@ ExperimentFile load_experiment_file(const fs::path& path) {
             if (who.empty() ||
                 !std::ranges::all_of(who, [](unsigned char c) { return c < 128 && std::isalnum(c) != 0; }))
                 throw Error(fmt::format("'{}' is no pseudonym of letters and digits", who));
-            experiment.subjects.push_back({one["pseudonym"].get<std::string>(), one["row"].get<std::size_t>(),
-                                           one["simulated"].get<bool>(), one["consent"].get<std::string>(),
-                                           one["complete"].get<bool>(), one["registration"].get<std::string>()});
+            experiment.subjects.push_back({one["pseudonym"].get<std::string>(),
+                                           one["row"].get<std::size_t>(),
+                                           one["simulated"].get<bool>(),
+                                           one["consent"].get<std::string>(),
+                                           one["complete"].get<bool>(),
+                                           one["registration"].get<std::string>(),
+                                           {}});
+            // Folders of before settings were stored have none.
+            if (const Json* settings = one.find("settings"))
+                for (const Json& setting : *settings)
+                    experiment.subjects.back().settings.push_back(setting.get<std::string>());
         }
         for (const Json& one : json["freed_rows"]) experiment.freed_rows.push_back(one.get<std::size_t>());
         return experiment;
@@ -154,7 +172,8 @@ void save_experiment_file(const ExperimentFile& experiment, const fs::path& path
                                     {"simulated", one.is_simulated},
                                     {"consent", one.consent},
                                     {"complete", one.is_complete},
-                                    {"registration", one.registration}});
+                                    {"registration", one.registration},
+                                    {"settings", one.settings}});
     file::write_durable_file(path, json.dump(2) + "\n");
 }
 

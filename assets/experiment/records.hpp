@@ -20,6 +20,12 @@ inline constexpr int data_format = 1;
 
 enum class Phase : std::uint8_t { practice, main, catch_trial, repeat };
 
+/// A level that a subject has set in an adjustment.
+struct Turn {
+    double time = 0.0;  ///< s, since the trial began: from when on it was rendered
+    double level = 0.0;
+};
+
 /// One trial that came to its end.
 struct TrialRecord {
     int number = 0;   ///< from 1, in the order of presentation
@@ -30,19 +36,22 @@ struct TrialRecord {
     std::string folder;        ///< within the subject's
     std::string output_hash;
     // Psychophysics.
-    double level = 0.0;        ///< wanted
+    double level = 0.0;        ///< wanted; of an adjustment that at which it began
     int interval = 0;          ///< with the stimulus, from 1; 0: none
     std::vector<double> rendered;       ///< measure of each interval: what was commanded after all limits
     std::optional<double> rendered_level;  ///< of the interval with the stimulus
     int answer = -1;           ///< index into the names of the answers
     bool is_correct = false;
-    std::optional<double> response_time;  ///< s, from the end of the last interval
+    std::optional<double> response_time;  ///< s, from the end of the last interval; of an adjustment from its beginning
+    std::vector<Turn> turns;  ///< of an adjustment
+    std::optional<double> match;  ///< level at which the subject ended an adjustment
     // Tasks.
     std::map<std::string, double> measures;
-    bool is_finished = true;   ///< the task was done before its time was over
+    bool is_finished = true;  ///< the task was done before its time was over
     // What may spoil a trial.
     double missed = 0.0, gap = 0.0, limited = 0.0;
-    std::string marked;        ///< why the trial is beyond the limits; empty: it is not
+    double sound_limited = 0.0;  ///< of the samples of the audio output that was limited most, a fraction
+    std::string marked;  ///< why the trial is beyond the limits; empty: it is not
     bool is_simulated = false, is_rehearsal = false;
 };
 
@@ -53,6 +62,8 @@ struct SubjectEntry {
     std::string consent;  ///< time at which consent was recorded; empty: none
     bool is_complete = false;
     std::string registration;  ///< note on the registration of the display
+    /// What the command line set for all trials of this subject: "hand.device=touch", "asset hand=file".
+    std::vector<std::string> settings;
 };
 
 struct FrozenFile {

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 
 using namespace tactus;
@@ -133,6 +134,94 @@ TEST_CASE("errors of a protocol have their line and what to do") {
               .find("compared with itself") != std::string::npos);
     CHECK(error_of(folder, good + "[[comparison]]\nfactor = \"size\"\na = \"smal\"\nb = \"large\"\n")
               .find("did you mean 'small'") != std::string::npos);
+}
+
+TEST_CASE("each order of conditions meets each order of tasks equally often, from 8 to 48 subjects") {
+    for (const std::size_t conditions : {2, 3, 4, 6})
+        for (const std::size_t tasks : {1, 2, 3, 4}) {
+            Protocol p;
+            p.order = OrderKind::williams;
+            p.conditions.resize(conditions);
+            p.tasks.resize(tasks);
+            const std::size_t rows = (conditions % 2 == 0 ? conditions : 2 * conditions) * tasks;
+            CAPTURE(conditions, tasks);
+            std::map<std::pair<std::vector<std::size_t>, std::vector<std::size_t>>, int> pairs;
+            for (std::size_t row = 0; row < rows; ++row) ++pairs[{condition_order(p, row), task_order(p, row)}];
+            CHECK(pairs.size() == rows);
+            for (std::size_t subjects = 8; subjects <= 48; ++subjects)
+                CHECK(balance_warning(p, subjects).empty() == (subjects % rows == 0));
+            // Neighbours begin with other tasks.
+            if (tasks > 1 && std::gcd(rows / tasks, tasks) == 1) CHECK(task_order(p, 0) != task_order(p, 1));
+        }
+}
+
+TEST_CASE("constant levels are multiples of the step") {
+    const Folder folder;
+    const std::string text = replaced(replaced(good, "max = 1\n", "max = 1\nstep = 0.1\n"), "kind = \"quest_plus\"",
+                                      "kind = \"constant\"\nlevels = [0.1, 0.3]");
+    CHECK(error_of(folder, text) == "none");
+    CHECK(error_of(folder, replaced(text, "[0.1, 0.3]", "[0.1, 0.35]")).find("0.35 is no multiple of the step") !=
+          std::string::npos);
+}
+
+TEST_CASE("a method refuses the keys of another one") {
+    const Folder folder;
+    const auto with = [&](const std::string& method) {
+        return error_of(folder, replaced(good, "kind = \"quest_plus\"\ntrials = 10", method));
+    };
+    CHECK(with("kind = \"quest_plus\"\ntrials = 10") == "none");
+    CHECK(with("kind = \"quest_plus\"\ntrials = 10\nreversals = 8").find("unknown key 'reversals'") !=
+          std::string::npos);
+    CHECK(with("kind = \"quest_plus\"\ntrials = 10\nlevels = [0.1, 0.2]").find("unknown key 'levels'") !=
+          std::string::npos);
+    CHECK(with("kind = \"staircase\"\ntrials = 10\nlevels = [0.1, 0.2]").find("unknown key 'levels'") !=
+          std::string::npos);
+    CHECK(with("kind = \"constant\"\ntrials = 10\nlevels = [0.1, 0.2]\nstart = 0.1").find("unknown key 'start'") !=
+          std::string::npos);
+    CHECK(with("kind = \"adjustment\"\ntrials = 10").find("belong together") != std::string::npos);
+}
+
+TEST_CASE("an adjustment has an even number of trials, steps within its range and no catch trials") {
+    const Folder folder;
+    const std::string text = replaced(replaced(good, "kind = \"choice\"", "kind = \"adjust\""),
+                                      "kind = \"quest_plus\"\ntrials = 10", "kind = \"adjustment\"\ntrials = 10");
+    const Protocol p = load_protocol(folder.write(text));
+    CHECK(p.is_adjustment());
+    CHECK(p.response.keys == std::vector<std::string>{"-", "+", "m"});
+    CHECK(p.method.step == Approx(0.04));  // 2 % of two decades
+    CHECK(p.trial_length() == Approx(80.0));
+    CHECK(p.begins_above(0.9));
+    CHECK_FALSE(p.begins_above(0.02));
+    const auto fails = [&](const std::string& what, const std::string& by, const std::string& message) {
+        const std::string error = error_of(folder, replaced(text, what, by));
+        INFO(error);
+        CHECK(error.find(message) != std::string::npos);
+    };
+    fails("trials = 10", "trials = 9", "must be even");
+    fails("trials = 10", "trials = 10\nstep = 1.5", "a number from");
+    fails("trials = 10", "trials = 10\nstarts = 0.6", "a number from");
+    fails("trials = 10", "trials = 10\ntarget = 0.75", "unknown key 'target'");
+    fails("format = 1", "format = 1\ncatch_rate = 0.1", "no catch trials");
+    fails("kind = \"adjust\"", "kind = \"choice\"", "belong together");
+}
+
+TEST_CASE("limits of sound are in decibels of full scale or in the unit of the signal") {
+    const Folder folder;
+    const Protocol all = load_protocol(folder.write(good + "[limits]\nsound = \"-20 dBFS\"\n"));
+    REQUIRE(all.limits.sound.size() == 1);
+    CHECK(all.limits.sound[0].output.empty());
+    CHECK(all.limits.sound[0].level == Approx(0.1));
+    CHECK(all.limits.sound[0].is_of_full_scale);
+    const Protocol some =
+        load_protocol(folder.write(good + "[limits]\nsound = {phones = \"0 dBFS\", speaker = 1.5}\n"));
+    REQUIRE(some.limits.sound.size() == 2);
+    CHECK(some.limits.sound[0].output == "phones");
+    CHECK(some.limits.sound[1].level == 1.5);
+    CHECK_FALSE(some.limits.sound[1].is_of_full_scale);
+    for (const char* bad : {"\"-20 dB\"", "\"3 dBFS\"", "\"loud\"", "0", "-1", "true", "\"-20 dBFS \""}) {
+        CAPTURE(bad);
+        CHECK(error_of(folder, good + "[limits]\nsound = " + bad + "\n") != "none");
+    }
 }
 
 TEST_CASE("levels on a grid are whole steps within the range") {

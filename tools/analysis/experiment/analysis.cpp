@@ -73,8 +73,49 @@ psychophysics::FitSettings fit_settings(const Protocol& protocol, const Answers&
     return settings;
 }
 
+/// Matches of a condition, on the axis of the stimulus.
+std::optional<psychophysics::AdjustedLevel> adjusted_in(const Protocol& protocol,
+                                                        const std::vector<TrialRecord>& records,
+                                                        const std::string& condition, bool with_marked) {
+    std::vector<double> matches;
+    std::vector<bool> began_above;
+    for (const TrialRecord& trial : records) {
+        if (!is_data(trial) || trial.condition != condition || !trial.match) continue;
+        if (!with_marked && !trial.marked.empty()) continue;
+        matches.push_back(protocol.stimulus->axis(*trial.match));
+        began_above.push_back(protocol.begins_above(trial.level));
+    }
+    return psychophysics::adjusted_level(matches, began_above);
+}
+
+SubjectThreshold analyse_adjustment(const Protocol& protocol, const AnalysedSubject& subject,
+                                    const std::string& condition) {
+    SubjectThreshold result;
+    result.condition = condition;
+    result.adjusted = adjusted_in(protocol, subject.records, condition, false);
+    const auto level = [&](double axis) { return protocol.stimulus->level_at(axis); };
+    if (result.adjusted) {
+        result.threshold = level(result.adjusted->match);
+        result.interval = {level(result.adjusted->interval.low), level(result.adjusted->interval.high)};
+    }
+    if (const auto all = adjusted_in(protocol, subject.records, condition, true))
+        result.with_marked = level(all->match);
+    return result;
+}
+
+double max_level_error_of(const AnalysedSubject& subject, const std::string& condition) {
+    double greatest = 0.0;
+    for (const TrialRecord& trial : subject.records) {
+        const double wanted = trial.match.value_or(trial.level);
+        if (trial.condition == condition && trial.rendered_level && wanted != 0.0)
+            greatest = std::max(greatest, std::abs(*trial.rendered_level / wanted - 1.0));
+    }
+    return greatest;
+}
+
 SubjectThreshold analyse_condition(const Protocol& protocol, const AnalysedSubject& subject,
                                    const std::string& condition, const AnalysisSettings& how, std::uint64_t seed) {
+    if (protocol.is_adjustment()) return analyse_adjustment(protocol, subject, condition);
     SubjectThreshold result;
     result.condition = condition;
     const Answers answers = answers_of(protocol, subject.records, condition, false);
@@ -104,10 +145,6 @@ SubjectThreshold analyse_condition(const Protocol& protocol, const AnalysedSubje
         result.d_prime = detection.d_prime;
         result.criterion = detection.criterion;
     }
-    for (const TrialRecord& trial : subject.records)
-        if (trial.condition == condition && trial.rendered_level && trial.level != 0.0)
-            result.max_level_error =
-                std::max(result.max_level_error, std::abs(*trial.rendered_level / trial.level - 1.0));
     return result;
 }
 
@@ -115,17 +152,23 @@ void analyse_tasks(const Protocol& protocol, AnalysedSubject& subject) {
     for (const experiment::Task& task : protocol.tasks)
         for (const experiment::Measure& measure : task.measures)
             for (const experiment::Condition& condition : protocol.conditions) {
-                double sum = 0.0, n = 0.0;
+                double sum = 0.0, n = 0.0, unmarked_sum = 0.0, unmarked = 0.0;
                 for (const TrialRecord& trial : subject.records) {
                     const auto value = trial.measures.find(measure.name);
                     if (!is_data(trial) || trial.task != task.name || trial.condition != condition.name ||
                         value == trial.measures.end())
                         continue;
                     if (measure.is_log && !(value->second > 0.0)) continue;
-                    sum += measure.is_log ? std::log(value->second) : value->second;
+                    const double one = measure.is_log ? std::log(value->second) : value->second;
+                    sum += one;
                     n += 1.0;
+                    if (!trial.marked.empty()) continue;
+                    unmarked_sum += one;
+                    unmarked += 1.0;
                 }
-                if (n > 0.0) subject.means[key_of(task.name, measure.name, condition.name)] = sum / n;
+                const std::string key = key_of(task.name, measure.name, condition.name);
+                if (n > 0.0) subject.means[key] = sum / n;
+                if (unmarked > 0.0) subject.unmarked_means[key] = unmarked_sum / unmarked;
             }
 }
 
@@ -139,19 +182,6 @@ std::string exclusion_of(const Protocol& protocol, const AnalysedSubject& subjec
     if (subject.trials > 0 && subject.marked > limits.max_marked * subject.trials + 1e-9)
         return fmt::format("{} of {} trials were marked", subject.marked, subject.trials);
     return {};
-}
-
-/// Natural logarithm of thresholds on a log axis, else the threshold.
-std::optional<double> value_of(const Protocol& protocol, const AnalysedSubject& subject, const std::string& task,
-                               const std::string& measure, const std::string& condition) {
-    if (!protocol.is_psychophysics()) {
-        const auto found = subject.means.find(key_of(task, measure, condition));
-        return found == subject.means.end() ? std::nullopt : std::optional(found->second);
-    }
-    for (const SubjectThreshold& one : subject.thresholds)
-        if (one.condition == condition && one.threshold)
-            return protocol.stimulus->is_log ? std::log(*one.threshold) : *one.threshold;
-    return std::nullopt;
 }
 
 bool is_log_measure(const Protocol& protocol, const std::string& task, const std::string& measure) {
@@ -175,12 +205,14 @@ std::vector<std::string> conditions_of(const Protocol& protocol, const experimen
 
 /// Mean over conditions; none when one is missing.
 std::optional<double> mean_over(const Protocol& protocol, const AnalysedSubject& subject,
-                                const experiment::Comparison& comparison, const std::string& level) {
+                                const experiment::Comparison& comparison, const std::string& level,
+                                Marked marked = Marked::as_analysed) {
     double sum = 0.0;
     const std::vector<std::string> names = conditions_of(protocol, comparison, level);
     if (names.empty()) return std::nullopt;
     for (const std::string& name : names) {
-        const std::optional<double> value = value_of(protocol, subject, comparison.task, comparison.measure, name);
+        const std::optional<double> value =
+            value_of(protocol, subject, comparison.task, comparison.measure, name, marked);
         if (!value) return std::nullopt;
         sum += *value;
     }
@@ -201,7 +233,61 @@ double place_of(const Protocol& protocol, std::size_t row, const experiment::Com
     return n > 0.0 ? sum / n : 0.0;
 }
 
-AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment::Comparison& comparison) {
+/// The comparison as a contrast of conditions in the model with periods and carry-over of its factor. Throws Error.
+statistics::CarryOver carry_over_of(const ExperimentAnalysis& analysis, const experiment::Comparison& comparison) {
+    const Protocol& protocol = analysis.protocol;
+    const std::size_t count = protocol.conditions.size();
+    std::vector<double> contrast(count, 0.0), left(count, 0.0);
+    const std::vector<std::string> a = conditions_of(protocol, comparison, comparison.a),
+                                   b = conditions_of(protocol, comparison, comparison.b);
+    for (std::size_t i = 0; i < count; ++i) {
+        const experiment::Condition& condition = protocol.conditions[i];
+        if (std::ranges::find(a, condition.name) != a.end()) contrast[i] = -1.0 / static_cast<double>(a.size());
+        if (std::ranges::find(b, condition.name) != b.end()) contrast[i] = 1.0 / static_cast<double>(b.size());
+        const std::string& level = condition.factors.at(comparison.factor);
+        left[i] = level == comparison.a ? -0.5 : level == comparison.b ? 0.5 : 0.0;
+    }
+    std::vector<statistics::PeriodValue> values;
+    std::size_t subjects = 0;
+    for (const AnalysedSubject& subject : analysis.subjects) {
+        if (!subject.excluded.empty()) continue;
+        const std::vector<std::size_t> order = experiment::condition_order(protocol, subject.entry.row);
+        if (order.size() != count)
+            throw Error("the conditions are repeated: a period has no single condition before it");
+        std::vector<statistics::PeriodValue> own;
+        for (std::size_t period = 0; period < count; ++period)
+            if (const auto value = value_of(protocol, subject, comparison.task, comparison.measure,
+                                            protocol.conditions[order[period]].name))
+                own.push_back({subjects, period, order[period], *value, period == 0 ? 0.0 : left[order[period - 1]]});
+        if (own.size() != count) continue;  // as the paired tests: subjects with all values
+        values.insert(values.end(), own.begin(), own.end());
+        ++subjects;
+    }
+    return statistics::carry_over(values, contrast);
+}
+
+/// The test with the marked trials treated the other way; none where no trial is marked.
+std::optional<statistics::PairedTest> other_test(const ExperimentAnalysis& analysis,
+                                                 const experiment::Comparison& comparison) {
+    std::vector<double> differences;
+    int marked = 0;
+    for (const AnalysedSubject& subject : analysis.subjects) {
+        if (!subject.excluded.empty()) continue;
+        marked += subject.marked;
+        const auto a = mean_over(analysis.protocol, subject, comparison, comparison.a, Marked::other),
+                   b = mean_over(analysis.protocol, subject, comparison, comparison.b, Marked::other);
+        if (a && b) differences.push_back(*b - *a);
+    }
+    if (marked == 0) return std::nullopt;
+    try {
+        return statistics::paired_t(differences);
+    } catch (const Error&) {
+        return std::nullopt;  // too few are left, or all are equal
+    }
+}
+
+AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment::Comparison& comparison,
+                           const AnalysisSettings& settings) {
     const Protocol& protocol = analysis.protocol;
     AnalysedComparison result;
     result.of = comparison;
@@ -252,17 +338,26 @@ AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment:
             result.cross_over = statistics::cross_over(result.differences, b_second);
         } catch (const Error&) {  // equal differences within both orders: no period effect is stated
         }
+    result.other_marked = other_test(analysis, comparison);
+    if (settings.has_carry_over) try {
+            result.carry_over = carry_over_of(analysis, comparison);
+        } catch (const Error& error) {
+            result.carry_over_problem = error.message();
+        }
     return result;
 }
 
 GroupValue group_value(const ExperimentAnalysis& analysis, const std::string& task, const std::string& measure,
                        const std::string& condition) {
-    GroupValue group{task, measure, condition, is_log_measure(analysis.protocol, task, measure), 0, 0.0, 0.0, 0.0};
+    GroupValue group{task, measure, condition, is_log_measure(analysis.protocol, task, measure), 0, 0.0, 0.0, 0.0, 0};
     std::vector<double> values;
-    for (const AnalysedSubject& subject : analysis.subjects)
-        if (subject.excluded.empty())
-            if (const auto value = value_of(analysis.protocol, subject, task, measure, condition))
-                values.push_back(*value);
+    for (const AnalysedSubject& subject : analysis.subjects) {
+        if (!subject.excluded.empty()) continue;
+        if (const auto value = value_of(analysis.protocol, subject, task, measure, condition)) values.push_back(*value);
+        group.marked += static_cast<std::size_t>(std::ranges::count_if(subject.records, [&](const TrialRecord& trial) {
+            return is_data(trial) && !trial.marked.empty() && trial.task == task && trial.condition == condition;
+        }));
+    }
     const statistics::Moments of = statistics::moments(values);
     group.count = of.count;
     const double reach = of.count > 1 ? of.deviation / std::sqrt(static_cast<double>(of.count)) *
@@ -298,6 +393,8 @@ AnalysedSubject analyse_subject(const Protocol& protocol, const fs::path& folder
         for (std::size_t i = 0; i < protocol.conditions.size(); ++i)
             subject.thresholds.push_back(analyse_condition(protocol, subject, protocol.conditions[i].name, settings,
                                                            protocol.seed + 1000 * entry.row + i));
+        for (SubjectThreshold& threshold : subject.thresholds)
+            threshold.max_level_error = max_level_error_of(subject, threshold.condition);
     } else {
         analyse_tasks(protocol, subject);
     }
@@ -305,6 +402,29 @@ AnalysedSubject analyse_subject(const Protocol& protocol, const fs::path& folder
 }
 
 }  // namespace
+
+std::optional<double> value_of(const Protocol& protocol, const AnalysedSubject& subject, const std::string& task,
+                               const std::string& measure, const std::string& condition, Marked marked) {
+    if (!protocol.is_psychophysics()) {
+        const auto& means = marked == Marked::other ? subject.unmarked_means : subject.means;
+        const auto found = means.find(key_of(task, measure, condition));
+        return found == means.end() ? std::nullopt : std::optional(found->second);
+    }
+    for (const SubjectThreshold& one : subject.thresholds) {
+        const std::optional<double>& threshold = marked == Marked::other ? one.with_marked : one.threshold;
+        if (one.condition == condition && threshold)
+            return protocol.stimulus->is_log ? std::log(*threshold) : *threshold;
+    }
+    return std::nullopt;
+}
+
+std::string unit_of(const Protocol& protocol, const std::string& task_name, const std::string& measure_name) {
+    if (protocol.is_psychophysics()) return protocol.stimulus->level_unit();
+    for (const experiment::Task& task : protocol.tasks)
+        for (const experiment::Measure& measure : task.measures)
+            if (task.name == task_name && measure.name == measure_name) return measure.unit;
+    return {};
+}
 
 ExperimentAnalysis analyse_experiment(const fs::path& folder, const AnalysisSettings& settings) {
     ExperimentAnalysis analysis;
@@ -329,7 +449,7 @@ ExperimentAnalysis analyse_experiment(const fs::path& folder, const AnalysisSett
     }
     std::vector<double> p;
     for (const experiment::Comparison& comparison : protocol.comparisons) {
-        analysis.comparisons.push_back(compare(analysis, comparison));
+        analysis.comparisons.push_back(compare(analysis, comparison, settings));
         // What cannot be tested counts as a comparison without effect, so that the others do not gain by it.
         const auto& test = analysis.comparisons.back().test;
         p.push_back(test ? test->p : 1.0);
@@ -369,9 +489,9 @@ TakeCheck check_takes(const fs::path& folder) {
                                                             entry.pseudonym, trial.number, name, before, now));
             };
             if (protocol.is_psychophysics()) {
+                const std::vector<double> now = rendered_of(protocol, trial, values);
                 for (std::size_t i = 0; i < trial.rendered.size(); ++i)
-                    expect(fmt::format("interval {}", i + 1), trial.rendered[i],
-                           measure_of(protocol.stimulus->measure, values, protocol.stimulus->windows[i]));
+                    expect(fmt::format("interval {}", i + 1), trial.rendered[i], now[i]);
             } else {
                 for (const experiment::Measure& measure : protocol.tasks[task].measures)
                     if (const auto found = trial.measures.find(measure.name); found != trial.measures.end())

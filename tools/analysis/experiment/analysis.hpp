@@ -5,10 +5,13 @@
 
 #include "assets/experiment/protocol.hpp"
 #include "assets/experiment/records.hpp"
+#include "dsp/psychophysics/adjustment.hpp"
 #include "dsp/psychophysics/fit.hpp"
+#include "dsp/statistics/carry_over.hpp"
 #include "dsp/statistics/paired.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -27,6 +30,7 @@ struct SubjectThreshold {
     std::optional<double> with_marked;  ///< the same with the marked trials
     std::optional<psychophysics::Interval> interval;  ///< 95 %, parametric bootstrap; ignores that levels were adaptive
     std::optional<double> d_prime, criterion;  ///< of yes/no tasks
+    std::optional<psychophysics::AdjustedLevel> adjusted;  ///< of adjustments: `threshold` is its match
     double max_level_error = 0.0;  ///< largest deviation of the rendered level from the wanted one, a fraction
 };
 
@@ -40,6 +44,7 @@ struct AnalysedSubject {
     /// Mean of a measure over the trials of a task in a condition: "task measure condition". Logarithms where the protocol
     /// states so.
     std::map<std::string, double> means;
+    std::map<std::string, double> unmarked_means;  ///< the same without the marked trials
     std::vector<experiment::TrialRecord> records;
 };
 
@@ -53,9 +58,15 @@ struct AnalysedComparison {
     std::optional<statistics::PairedTest> test;
     std::optional<statistics::PermutationTest> permutation;
     double adjusted_p = 1.0;  ///< Holm, over all comparisons that were tested
+    /// The same test with the marked trials, where the analysis leaves them out (psychophysics), or without them (tasks). None:
+    /// no trial is marked, or too few values are left.
+    std::optional<statistics::PairedTest> other_marked;
     std::optional<statistics::EquivalenceTest> equivalence;
     std::pair<double, double> effect_interval;  ///< of the difference in standard deviations, confidence 1 - 2 alpha
     std::optional<statistics::CrossOver> cross_over;
+    std::optional<statistics::CarryOver>
+        carry_over;  ///< if asked for; per difference of `b` and `a` in the period before
+    std::string carry_over_problem;  ///< why there is none
     double detectable = 0.0;  ///< standardised effect found with 80 % power at this n
     double equivalence_power = 0.0;  ///< at no effect
 };
@@ -65,6 +76,7 @@ struct GroupValue {
     bool is_log = false;  ///< mean and interval are geometric
     std::size_t count = 0;
     double mean = 0.0, low = 0.0, high = 0.0;
+    std::size_t marked = 0;  ///< trials, of all included subjects
 };
 
 struct ExperimentAnalysis {
@@ -78,7 +90,19 @@ struct ExperimentAnalysis {
 
 struct AnalysisSettings {
     int bootstrap = 499;  ///< samples for the intervals of thresholds; 0: none
+    bool has_carry_over = false;  ///< also adjust each comparison for carry-over
 };
+
+/// Marked trials: psychophysics leaves them out and tasks include them, or the other way round.
+enum class Marked : std::uint8_t { as_analysed, other };
+
+/// Natural logarithm of a threshold on a log axis or of a measure with `log`, else the value itself; none: there is none.
+std::optional<double> value_of(const experiment::Protocol& protocol, const AnalysedSubject& subject,
+                               const std::string& task, const std::string& measure, const std::string& condition,
+                               Marked marked = Marked::as_analysed);
+
+/// Unit in which a measure or a threshold is shown; empty: none.
+std::string unit_of(const experiment::Protocol& protocol, const std::string& task, const std::string& measure);
 
 /// Reads and analyses. Throws Error when the folder is none, or holds no subject.
 ExperimentAnalysis analyse_experiment(const std::filesystem::path& folder, const AnalysisSettings& settings);

@@ -225,7 +225,7 @@ SubjectEntry ExperimentFolder::enrol(const std::string& pseudonym, bool is_simul
                                     found->is_simulated ? "simulated" : "real", folder_.string()));
         return *found;
     }
-    SubjectEntry entry{pseudonym, 0, is_simulated, {}, false, {}};
+    SubjectEntry entry{pseudonym, 0, is_simulated, {}, false, {}, {}};
     const auto freed = std::ranges::min_element(file_.freed_rows);
     if (freed != file_.freed_rows.end()) {
         entry.row = *freed;
@@ -261,7 +261,8 @@ void ExperimentFolder::withdraw(const std::string& pseudonym) {
     file_.subjects.erase(found);
     save();
     // Results of an analysis may name the subject.
-    for (const char* name : {"report.html", "results.json", "participants.tsv"}) fs::remove(folder_ / name, failure);
+    for (const char* name : {"report.html", "results.json", "participants.tsv", "mixed"})
+        fs::remove_all(folder_ / name, failure);
 }
 
 std::string ExperimentFolder::protocol_hash() const {

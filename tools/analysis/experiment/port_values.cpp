@@ -62,6 +62,8 @@ struct Tapped {
     const ValueType* type;
     std::size_t offset, channel;
     std::atomic<bool>* over;  ///< set when the value becomes true; null: by none
+    std::atomic<int>* presses;  ///< counts how often it becomes true; null: by none
+    bool was_true = true;  // held from the beginning is no press
 };
 
 class SeriesSink : public io::Sink {
@@ -70,10 +72,13 @@ public:
 
     void take(std::int64_t first, const std::byte* frames, std::size_t count) override {
         for (std::size_t i = 0; i < count; ++i)
-            for (const Tapped& tap : taps_) {
+            for (Tapped& tap : taps_) {
                 take::to_frame(*tap.type, frames + i * frame_bytes_ + tap.offset, frame_.data());
                 put(tap.series->values, first + static_cast<std::int64_t>(i), frame_[tap.channel]);
-                if (tap.over && frame_[tap.channel] > 0.5) *tap.over = true;
+                const bool is_true = frame_[tap.channel] > 0.5;
+                if (tap.over && is_true) *tap.over = true;
+                if (tap.presses && is_true && !tap.was_true) ++*tap.presses;
+                tap.was_true = is_true;
             }
     }
     void finish() override {}
@@ -202,8 +207,16 @@ void check_ports(const compile::Schedule& schedule, const std::set<std::string>&
     }
 }
 
-PortCollector::PortCollector(const std::set<std::string>& ports, std::string done) : done_(std::move(done)) {
+PortCollector::PortCollector(const std::set<std::string>& ports, std::string done,
+                             const std::vector<std::string>& pressed)
+    : done_(std::move(done)) {
     for (const std::string& port : ports) entries_.emplace(port, Entry{});
+    for (const std::string& port : pressed) presses_[port] = 0;
+}
+
+int PortCollector::take_presses(const std::string& port) {
+    const auto found = presses_.find(port);
+    return found == presses_.end() ? 0 : found->second.exchange(0);
 }
 
 run::TapMaker PortCollector::tap() {
@@ -220,8 +233,10 @@ run::TapMaker PortCollector::tap() {
                     const std::size_t channel = channel_index(name, take::channels_of(*column.type));
                     entry.is_found = true;
                     entry.series.period = seconds(group.plan->period);
-                    taps.push_back(
-                        {&entry.series, column.type, column.offset, channel, name == done_ ? &over_ : nullptr});
+                    const auto presses = presses_.find(name);
+                    taps.push_back({&entry.series, column.type, column.offset, channel,
+                                    name == done_ ? &over_ : nullptr,
+                                    presses == presses_.end() ? nullptr : &presses->second});
                 } catch (const Error& error) {
                     problems_[name] = error.message();
                 }
@@ -241,6 +256,32 @@ PortValues PortCollector::values() const {
     return values;
 }
 
+void SteppedPorts::watch() {
+    for (const std::string& name : ports_) observer_.watch(port_and_channel(name).first, observe::Watch::every, this);
+}
+
+void SteppedPorts::fetch() {
+    observer_.advance();
+    // Several names may be channels of one port.
+    std::map<std::string, observe::SeenValues> seen;
+    for (const std::string& name : ports_) {
+        const std::string port = port_and_channel(name).first;
+        if (!seen.contains(port)) observer_.fetch(port, seen[port]);
+    }
+    const std::vector<observe::Observer::Port> known = observer_.ports();
+    for (const std::string& name : ports_) {
+        const std::string port = port_and_channel(name).first;
+        const auto info = std::ranges::find(known, port, &observe::Observer::Port::name);
+        if (info == known.end()) throw Error(fmt::format("the patch has no output '{}'", port));
+        const std::size_t channel = channel_index(name, take::channels_of(*info->type));
+        PortSeries& series = values_[name];
+        series.period = seconds(info->period);
+        const observe::SeenValues& fetched = seen[port];
+        for (std::size_t i = 0; i < fetched.when.size(); ++i)
+            put(series.values, fetched.when[i] / info->period, fetched.columns[i * fetched.per_value + channel]);
+    }
+}
+
 PortValues port_values_of(const std::filesystem::path& folder, const std::set<std::string>& ports) {
     const take::Take taken = take::Take::load(folder);
     taken.require_values();
@@ -258,6 +299,35 @@ PortValues port_values_of(const std::filesystem::path& folder, const std::set<st
         values.emplace(name, std::move(series));
     }
     return values;
+}
+
+namespace {
+
+/// Where an interval of a repeated presentation showed the level of an adjustment that holds from `since` to `end`: the last time
+/// that it did for at least half of its duration, or else its longest part. Empty: nowhere.
+Window last_presentation(const Window& window, double period, double since, double end) {
+    Window best;
+    for (int round = 0; round * period + window.begin < end; ++round) {
+        const Window part{std::max(round * period + window.begin, since), std::min(round * period + window.end, end)};
+        const double duration = part.end - part.begin;
+        if (duration > 0.0 && (duration >= 0.5 * (window.end - window.begin) || duration > best.end - best.begin))
+            best = part;
+    }
+    return best;
+}
+
+}  // namespace
+
+std::vector<double> rendered_of(const experiment::Protocol& protocol, const experiment::TrialRecord& trial,
+                                const PortValues& values) {
+    constexpr double settled = 0.05;  // s, after a parameter was set
+    const double since = trial.turns.empty() ? 0.0 : trial.turns.back().time + settled;
+    std::vector<double> rendered;
+    for (const Window& window : protocol.stimulus->windows)
+        rendered.push_back(measure_of(
+            protocol.stimulus->measure, values,
+            protocol.is_adjustment() ? last_presentation(window, protocol.length, since, trial.seconds) : window));
+    return rendered;
 }
 
 double measure_of(const Measure& measure, const PortValues& values, const std::optional<Window>& window) {

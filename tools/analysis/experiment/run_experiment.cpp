@@ -14,6 +14,7 @@
 #include "tools/run/scratch_folder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,7 @@ using file::Json;
 
 namespace {
 
-constexpr const char* trials_name = "trials.jsonl";
+constexpr const char *trials_name = "trials.jsonl", *sound_node = "audio_output";
 
 /// What the summary of a run says of things that may spoil a trial.
 void read_quality(const std::string& summary, TrialRecord& record) {
@@ -51,6 +52,30 @@ void read_quality(const std::string& summary, TrialRecord& record) {
         const double limited = force->value("over_limit_ticks", 0.0) + force->value("slew_limited_ticks", 0.0);
         if (ticks > 0.0) record.limited = limited / ticks;
     }
+    record.sound_limited = 0.0;
+    for (const auto& [name, section] : json.items())
+        if (section.is_object() && section.contains("clipped_samples"))
+            if (const double samples = section.value("samples", 0.0); samples > 0.0)
+                record.sound_limited = std::max(record.sound_limited, section.value("clipped_samples", 0.0) / samples);
+}
+
+/// Throws Error when an output that the protocol limits would play louder.
+void check_sound(const Protocol& protocol, const compile::Schedule& plan, const std::string& summary,
+                 const std::string& where) {
+    const Json json = Json::parse(summary);
+    for (const compile::ScheduleNode& node : plan.nodes) {
+        if (node.type->name != sound_node || !json.contains(node.name)) continue;
+        const Json& played = json[node.name];
+        const double limit = node.params.at("limit")->value, peak = played.value("peak", 0.0);
+        if (!(played.value("clipped_samples", 0.0) > 0.0)) continue;
+        throw Error(
+            fmt::format("{}: {}: '{}' would play {:.1f} dBFS ({:.3g} of the signal), louder than its limit of {:.1f} "
+                        "dBFS ({:.3g}); "
+                        "make the sound quieter, or change the limit in [limits]",
+                        protocol.file.string(), where, node.name, 20.0 * std::log10(peak),
+                        peak * node.params.at("full_scale")->value, 20.0 * std::log10(limit),
+                        limit * node.params.at("full_scale")->value));
+    }
 }
 
 std::string mark_of(const TrialRecord& record, const experiment::Limits& limits) {
@@ -58,6 +83,8 @@ std::string mark_of(const TrialRecord& record, const experiment::Limits& limits)
     if (record.gap > limits.gap) return fmt::format("a gap of {:.3g} ms", 1e3 * record.gap);
     if (record.limited > limits.limited)
         return fmt::format("the force was limited {:.3g} % of the time", 100.0 * record.limited);
+    if (record.sound_limited > limits.limited)
+        return fmt::format("the sound was limited {:.3g} % of the time", 100.0 * record.sound_limited);
     return {};
 }
 
@@ -77,13 +104,6 @@ std::optional<double> level_of(const Protocol& protocol, std::size_t condition, 
     if (others > 0) standard = sum / others;
     const double level = protocol.stimulus->is_relative ? value / standard - 1.0 : value - standard;
     return std::isfinite(level) ? std::optional(level) : std::nullopt;
-}
-
-std::vector<double> rendered_of(const Stimulus& stimulus, const PortValues& values) {
-    std::vector<double> rendered;
-    for (const experiment::Window& window : stimulus.windows)
-        rendered.push_back(measure_of(stimulus.measure, values, window));
-    return rendered;
 }
 
 /// The first answering port that becomes true after the last interval began.
@@ -112,6 +132,7 @@ bool is_right(const Protocol& protocol, const TrialSpec& spec, int answer) {
         case ResponseKind::choice: return answer == spec.interval - 1;
         case ResponseKind::yes_no:
         case ResponseKind::same_different: return (answer == 1) == (spec.interval > 0);
+        case ResponseKind::adjust: return answer == 2;
     }
     return false;
 }
@@ -145,6 +166,7 @@ public:
         if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", home_.string(), failure.message()));
         trials_ = experiment::load_trials(home_ / trials_name);
         end.resumed = static_cast<int>(trials_.size());
+        note_settings();
         SubjectSession session(protocol_, entry_.row, trials_);
         if (session.next() && prepare(end.resumed > 0)) {
             while (const std::optional<TrialSpec> spec = session.next()) {
@@ -171,6 +193,24 @@ public:
     }
 
 private:
+    /// Trials of one subject must not differ in what the command line set.
+    void note_settings() {
+        std::vector<std::string> settings = choice_.settings;
+        for (const std::string& asset : choice_.assets) settings.push_back("asset " + asset);
+        if (settings == entry_.settings) return;
+        if (!trials_.empty())
+            throw Error(
+                fmt::format("{}: the trials of {} were run with {}, and now with {}; resume the session with the same "
+                            "--set and --asset, or withdraw the subject and begin anew",
+                            choice_.out.string(), entry_.pseudonym, listed(entry_.settings), listed(settings)));
+        entry_.settings = std::move(settings);
+        folder_.update(entry_);
+    }
+
+    static std::string listed(const std::vector<std::string>& settings) {
+        return settings.empty() ? std::string("none") : fmt::format("'{}'", fmt::join(settings, "', '"));
+    }
+
     /// Consent, registration, instructions. False: the session is not begun.
     bool prepare(bool is_resumed) {
         if (simulated_) return true;
@@ -248,6 +288,10 @@ private:
         run::RunChoice run = trial_choice(protocol_, spec);
         run.overrides.settings.insert(run.overrides.settings.end(), choice_.settings.begin(), choice_.settings.end());
         run.overrides.assets.insert(run.overrides.assets.end(), choice_.assets.begin(), choice_.assets.end());
+        if (!protocol_.limits.sound.empty()) {
+            const auto caps = sound_settings(protocol_, run::load_plan(run, assets_));
+            run.overrides.settings.insert(run.overrides.settings.end(), caps.begin(), caps.end());
+        }
         run.out = at / "run";
         run.record = at / "take";
         run.edits = false;
@@ -261,14 +305,24 @@ private:
             }
         }
         PortCollector collector(ports_of(protocol_, spec.task),
-                                protocol_.is_psychophysics() ? std::string() : protocol_.tasks[spec.task].done);
+                                protocol_.is_psychophysics() ? std::string() : protocol_.tasks[spec.task].done,
+                                protocol_.is_adjustment() ? protocol_.response.ports : std::vector<std::string>());
         run.tap = collector.tap();
         const std::size_t losses = end.losses.size();
-        perform(spec, run, collector, record, end);
+        std::optional<TurnedLevel> turned;
+        if (protocol_.is_adjustment()) turned.emplace(protocol_, spec, collector);
+        if (!perform(spec, run, collector, turned ? &*turned : nullptr, record, end)) return std::nullopt;
         // A trial that was cut short, by Ctrl-C or by closing the window, is not kept.
         if (stop_ || (!simulated_ && !collector.over() && record.seconds < 0.99 * *run.seconds)) return std::nullopt;
         const PortValues values = collector.values();
-        if (protocol_.is_psychophysics()) {
+        if (turned) {
+            record.turns = turned->turns();
+            record.response_time = turned->matched_at();
+            if (turned->matched_at()) record.match = turned->level();
+            record.answer = turned->matched_at() ? 2 : -1;
+            record.is_correct = is_right(protocol_, spec, record.answer);
+            read_rendered(spec, values, record);
+        } else if (protocol_.is_psychophysics()) {
             if (!answer(spec, values, record)) return std::nullopt;
         } else {
             const experiment::Task& task = protocol_.tasks[spec.task];
@@ -289,28 +343,61 @@ private:
     std::string level_mark(const TrialRecord& record) const {
         if (!protocol_.is_psychophysics() || record.interval == 0) return {};
         const std::string unit = protocol_.stimulus->level_unit();
+        if (protocol_.is_adjustment() && !record.match)
+            return fmt::format("it ended after {:.3g} s without a match", record.seconds);
         if (!record.rendered_level) return "an interval has nothing that can be measured";
-        if (protocol_.stimulus->is_rendered(record.level, *record.rendered_level)) return {};
+        if (protocol_.stimulus->is_rendered(record.match.value_or(record.level), *record.rendered_level)) return {};
         return fmt::format("the device was commanded level {}", format_quantity(*record.rendered_level, unit));
     }
 
-    void perform(const TrialSpec& spec, const run::RunChoice& run, PortCollector& collector, TrialRecord& record,
-                 ExperimentEnd& end) {
+    /// False: the subject ended the session.
+    bool perform(const TrialSpec& spec, const run::RunChoice& run, PortCollector& collector, TurnedLevel* turned,
+                 TrialRecord& record, ExperimentEnd& end) {
         if (simulated_) {
-            const run::RenderedRun rendered = run::render_run(run, assets_, stop_, [](double) {});
+            const run::RenderedRun rendered =
+                turned ? render_adjustment(spec, run, *turned) : run::render_run(run, assets_, stop_, [](double) {});
             end.losses.insert(end.losses.end(), rendered.losses.begin(), rendered.losses.end());
             read_quality(rendered.summary, record);
-            return;
+            return true;
         }
-        const LiveEnd live = hooks_.perform(run, protocol_.conditions[spec.condition], collector.over());
+        const LiveEnd live = hooks_.perform(run, protocol_.conditions[spec.condition], collector.over(), turned);
         end.losses.insert(end.losses.end(), live.losses.begin(), live.losses.end());
         read_quality(live.summary, record);
+        return !live.is_ended;
+    }
+
+    /// The simulated subject turns the level after each presentation, by what was rendered in it.
+    run::RenderedRun render_adjustment(const TrialSpec& spec, const run::RunChoice& run, TurnedLevel& turned) {
+        observe::Observer observer(observe::Observer::Pace::lossless);
+        const std::set<std::string> ports = ports_of(protocol_, spec.task);
+        SteppedPorts seen(ports, observer);
+        return run::render_in_steps(run, assets_, &observer, [&](run::Engine& engine) {
+            for (int shown = 1; shown <= protocol_.method.presentations && !stop_; ++shown) {
+                engine.advance(std::llround(shown * protocol_.length * static_cast<double>(flicks_per_second)));
+                seen.fetch();
+                TrialRecord so_far;
+                so_far.turns = turned.turns();
+                so_far.seconds = shown * protocol_.length;
+                const int presses = simulated_->presses(
+                    spec,
+                    level_of(protocol_, spec.condition, rendered_of(protocol_, so_far, seen.values()), spec.interval));
+                const double before = turned.level();
+                turned.turn(presses, engine);
+                if (turned.level() != before) continue;
+                // It matches, or the range ends here.
+                turned.answer(2, engine);
+                return;
+            }
+        });
+    }
+
+    void read_rendered(const TrialSpec& spec, const PortValues& values, TrialRecord& record) const {
+        record.rendered = rendered_of(protocol_, record, values);
+        record.rendered_level = level_of(protocol_, spec.condition, record.rendered, spec.interval);
     }
 
     bool answer(const TrialSpec& spec, const PortValues& values, TrialRecord& record) {
-        const Stimulus& stimulus = *protocol_.stimulus;
-        record.rendered = rendered_of(stimulus, values);
-        record.rendered_level = level_of(protocol_, spec.condition, record.rendered, spec.interval);
+        read_rendered(spec, values, record);
         std::optional<Answered> given;
         if (simulated_) {
             const SimulatedAnswer one = simulated_->answer(spec, record.rendered_level);
@@ -346,7 +433,7 @@ run::RunChoice trial_choice(const Protocol& protocol, const TrialSpec& spec) {
     auto& settings = run.overrides.settings;
     if (protocol.is_psychophysics()) {
         run.patch = protocol.patch.string();
-        run.seconds = protocol.length;
+        run.seconds = protocol.trial_length();
         settings = protocol.settings;
         settings.insert(settings.end(), condition.settings.begin(), condition.settings.end());
         const Stimulus& stimulus = *protocol.stimulus;
@@ -367,11 +454,52 @@ run::RunChoice trial_choice(const Protocol& protocol, const TrialSpec& spec) {
     return run;
 }
 
+std::vector<std::string> sound_settings(const Protocol& protocol, const compile::Schedule& plan) {
+    std::vector<std::string> outputs, settings;
+    for (const compile::ScheduleNode& node : plan.nodes)
+        if (node.type->name == sound_node) outputs.push_back(node.name);
+    for (const experiment::SoundCap& cap : protocol.limits.sound)
+        if (!cap.output.empty() && std::ranges::find(outputs, cap.output) == outputs.end())
+            throw Error(fmt::format("{}: [limits]: sound: {} has no audio output '{}'{}", protocol.file.string(),
+                                    plan.patch.file.string(), cap.output, did_you_mean(cap.output, outputs)));
+    for (const compile::ScheduleNode& node : plan.nodes) {
+        if (node.type->name != sound_node) continue;
+        const Param* limit = node.params.at("limit");
+        for (const experiment::SoundCap& cap : protocol.limits.sound) {
+            if (!cap.output.empty() && cap.output != node.name) continue;
+            for (const compile::ScheduleWire& wire : plan.wires)
+                if (wire.param == limit)
+                    throw Error(wire.where,
+                                fmt::format("this wire drives the limit of '{}', which the experiment sets; "
+                                            "remove one of them",
+                                            node.name));
+            const double level = cap.is_of_full_scale ? cap.level : cap.level / node.params.at("full_scale")->value;
+            settings.push_back(fmt::format("{}.limit={}", node.name, std::min(level, 1.0)));
+        }
+    }
+    return settings;
+}
+
+namespace {
+
+/// Renders a trial with the limits of its sound and returns the summary. Throws Error when a limit was reached.
+std::string render_limited(const Protocol& protocol, run::RunChoice& run, compile::AssetCache& assets,
+                           const std::string& where) {
+    const std::atomic<bool> never{false};
+    if (protocol.limits.sound.empty()) return run::render_run(run, assets, never, [](double) {}).summary;
+    const auto caps = sound_settings(protocol, run::load_plan(run, assets));
+    run.overrides.settings.insert(run.overrides.settings.end(), caps.begin(), caps.end());
+    const std::string summary = run::render_run(run, assets, never, [](double) {}).summary;
+    check_sound(protocol, run::load_plan(run, assets), summary, where);
+    return summary;
+}
+
+}  // namespace
+
 void check_levels(const Protocol& protocol, compile::AssetCache& assets, const std::vector<std::string>& more,
                   const std::function<void(const std::string&)>& say) {
     if (!protocol.is_psychophysics()) return;
     const Stimulus& stimulus = *protocol.stimulus;
-    const std::atomic<bool> never{false};
     for (std::size_t condition = 0; condition < protocol.conditions.size(); ++condition)
         for (const double level : {stimulus.min, stimulus.max})
             for (int interval = 1; interval <= static_cast<int>(stimulus.parameters.size()); ++interval) {
@@ -382,16 +510,18 @@ void check_levels(const Protocol& protocol, compile::AssetCache& assets, const s
                 spec.interval = interval;
                 run::RunChoice run = trial_choice(protocol, spec);
                 run.overrides.settings.insert(run.overrides.settings.end(), more.begin(), more.end());
+                run.seconds = protocol.length;
                 run.out = scratch.path() / "run";
                 PortCollector collector(ports_of(protocol, 0));
                 run.tap = collector.tap();
-                TrialRecord record;
-                read_quality(run::render_run(run, assets, never, [](double) {}).summary, record);
-                const std::vector<double> rendered = rendered_of(stimulus, collector.values());
-                const std::optional<double> got = level_of(protocol, condition, rendered, interval);
                 const std::string where =
                     fmt::format("condition {}, interval {}, level {}", protocol.conditions[condition].name, interval,
                                 format_quantity(level, stimulus.level_unit()));
+                const std::string summary = render_limited(protocol, run, assets, where);
+                TrialRecord record;
+                read_quality(summary, record);
+                const std::vector<double> rendered = rendered_of(protocol, record, collector.values());
+                const std::optional<double> got = level_of(protocol, condition, rendered, interval);
                 if (!got || !stimulus.is_rendered(level, *got))
                     throw Error(fmt::format(
                         "{}: {}: the device is commanded {}, which misses the level by more than {:.3g} %; "
@@ -417,6 +547,12 @@ void check_tasks(const Protocol& protocol, compile::AssetCache& assets, const st
             if (!protocol.tasks[task].ideal.empty())
                 run.overrides.assets.push_back("hand=" + protocol.tasks[task].ideal.string());
             check_ports(run::load_plan(run, assets), ports_of(protocol, task));
+            if (protocol.limits.sound.empty()) continue;
+            const run::ScratchFolder scratch;
+            run.out = scratch.path() / "run";
+            render_limited(
+                protocol, run, assets,
+                fmt::format("task {}, condition {}", protocol.tasks[task].name, protocol.conditions[condition].name));
         }
 }
 

@@ -7,6 +7,7 @@
 #include "assets/experiment/records.hpp"
 #include "graph/compile/load_assets.hpp"
 #include "tools/analysis/experiment/subject_session.hpp"
+#include "tools/analysis/experiment/turned_level.hpp"
 #include "tools/run/run_choice.hpp"
 
 #include <atomic>
@@ -28,6 +29,7 @@ struct Answered {
 struct LiveEnd {
     std::string summary;  ///< as JSON
     std::vector<std::string> losses;
+    bool is_ended = false;  ///< the subject ended the session in the trial, which is not kept
 };
 
 /// What a subject or an experimenter does. All but `say` may be null for simulated subjects.
@@ -38,7 +40,10 @@ struct ExperimentHooks {
     std::function<std::optional<Answered>(const experiment::Protocol&)> ask;  ///< none: end the session
     std::function<void(const TrialSpec&, int done, int blocks)> progress;
     /// Runs a patch live, until its end or until `over`, which a task sets that is done, and a user who ends the session.
-    std::function<LiveEnd(const run::RunChoice&, const experiment::Condition&, std::atomic<bool>& over)> perform;
+    /// `turned`: the level that the subject adjusts; null: none.
+    std::function<LiveEnd(const run::RunChoice&, const experiment::Condition&, std::atomic<bool>& over,
+                          TurnedLevel* turned)>
+        perform;
 };
 
 struct ExperimentChoice {
@@ -62,13 +67,18 @@ struct ExperimentEnd {
 /// The overrides and length of a trial's patch. Level and interval become parameters.
 run::RunChoice trial_choice(const experiment::Protocol& protocol, const TrialSpec& spec);
 
+/// NODE.limit=VALUE for each audio output whose loudest sample the protocol limits. Throws Error for an output that the patch does
+/// not have, and for a limit that a wire drives.
+std::vector<std::string> sound_settings(const experiment::Protocol& protocol, const compile::Schedule& plan);
+
 /// Renders the least and the greatest level of each condition with the patch's simulated hand and measures them. Throws Error with
 /// both numbers when a rendered level misses the wanted one by more than the tolerance, or is beyond the limits: then the
 /// experiment cannot present its levels.
 void check_levels(const experiment::Protocol& protocol, compile::AssetCache& assets,
                   const std::vector<std::string>& settings, const std::function<void(const std::string&)>& say);
 
-/// Compiles the patch of each task in each condition, so that an error of the last one ends no session halfway. Throws Error.
+/// Compiles the patch of each task in each condition, so that an error of the last one ends no session halfway. Where the protocol
+/// limits the sound, also renders the ideal movement, and refuses a patch that plays louder. Throws Error.
 void check_tasks(const experiment::Protocol& protocol, compile::AssetCache& assets,
                  const std::vector<std::string>& settings);
 

@@ -22,7 +22,9 @@ using experiment::ResponseKind;
 namespace {
 
 /// Streams of random numbers that a subject uses.
-enum Stream : std::uint64_t { of_subject = 1, of_answer, of_time, of_hand };
+enum Stream : std::uint64_t { of_subject = 1, of_answer, of_time, of_hand, of_match };
+
+constexpr int most_presses = 12;  // between two presentations
 
 }  // namespace
 
@@ -44,6 +46,12 @@ SimulatedSubject::SimulatedSubject(const experiment::ObserverModel& model, const
         if (std::ranges::find(conditions, condition) == conditions.end())
             throw Error(fmt::format("{}: the experiment has no condition '{}'{}", file, condition,
                                     did_you_mean(condition, conditions)));
+    if (protocol.is_psychophysics() && protocol.stimulus->is_log)
+        for (std::size_t i = 0; i < protocol.conditions.size(); ++i)
+            if (!(threshold(i) > 0.0))
+                throw Error(
+                    fmt::format("{}: the threshold of condition '{}' must be above 0: levels are on a log scale", file,
+                                conditions[i]));
     for (const experiment::HandEffect& effect : model.hand.effects) {
         const bool is_known = std::ranges::any_of(protocol.conditions, [&](const experiment::Condition& condition) {
             const auto found = condition.factors.find(effect.factor);
@@ -90,6 +98,17 @@ SimulatedAnswer SimulatedSubject::answer(const TrialSpec& spec, std::optional<do
     // Log-normal with a spread of 0.3.
     answer.response_time = observer.response_time * std::exp(0.3 * Random{seed_ ^ mix(of_time)}.normal(index));
     return answer;
+}
+
+int SimulatedSubject::presses(const TrialSpec& spec, std::optional<double> rendered_level) const {
+    const auto& observer = model_.observer;
+    const experiment::Stimulus& stimulus = *protocol_.stimulus;
+    if (!rendered_level || (stimulus.is_log && !(*rendered_level > 0.0))) return most_presses;
+    const double noise = Random{seed_ ^ mix(of_match)}.normal(static_cast<std::uint64_t>(spec.number));
+    const double wanted = stimulus.axis(threshold(spec.condition)) + observer.match_spread * noise +
+                          (protocol_.begins_above(spec.level) ? observer.match_lag : -observer.match_lag);
+    const double missing = std::round((wanted - stimulus.axis(*rendered_level)) / protocol_.method.step);
+    return static_cast<int>(std::clamp(missing, -double{most_presses}, double{most_presses}));
 }
 
 std::string SimulatedSubject::hand_targets(const TrialSpec& spec) const {

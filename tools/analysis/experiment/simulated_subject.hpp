@@ -27,6 +27,9 @@ public:
 
     /// Answers by the level that was rendered, not by the one that was asked for. None, no level: as if there were no stimulus.
     SimulatedAnswer answer(const TrialSpec& spec, std::optional<double> rendered_level) const;
+    /// Presses by which the subject turns an adjusted level after a presentation; 0: it matches. None, no level: nothing was
+    /// noticed, and the subject turns it up.
+    int presses(const TrialSpec& spec, std::optional<double> rendered_level) const;
     /// Threshold of this subject, level.
     double threshold(std::size_t condition) const;
 

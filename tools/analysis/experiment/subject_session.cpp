@@ -73,16 +73,28 @@ void SubjectSession::begin_block() {
     switch (method.kind) {
         case Method::Kind::staircase: state_.rule = psychophysics::Staircase(method.rule); break;
         case Method::Kind::quest_plus: state_.rule = psychophysics::QuestPlus(quest_settings(protocol_)); break;
-        case Method::Kind::constant: {
-            Constant constant;
-            for (const std::size_t level :
-                 statistics::block_random(method.levels.size(), static_cast<std::size_t>(method.trials),
+        case Method::Kind::constant:
+        case Method::Kind::adjustment: {
+            const bool is_constant = method.kind == Method::Kind::constant;
+            const auto count = static_cast<std::size_t>(method.trials);
+            Listed listed;
+            for (const std::size_t index :
+                 statistics::block_random(is_constant ? method.levels.size() : 2, is_constant ? count : count / 2,
                                           mix(protocol_.seed + 1) ^ mix(row_ * 1000 + block_)))
-                constant.order.push_back(method.levels[level]);
-            state_.rule = std::move(constant);
+                listed.levels.push_back(is_constant ? method.levels[index]
+                                                    : start_of_adjustment(index == 1, listed.levels.size()));
+            state_.rule = std::move(listed);
             break;
         }
     }
+}
+
+double SubjectSession::start_of_adjustment(bool is_above, std::uint64_t trial) const {
+    const Stimulus& stimulus = *protocol_.stimulus;
+    const double low = stimulus.axis(stimulus.min), high = stimulus.axis(stimulus.max);
+    const double inward = random(3 * trial + 2) * protocol_.method.starts * (high - low);
+    return stimulus.presentable(
+        std::clamp(stimulus.level_at(is_above ? high - inward : low + inward), stimulus.min, stimulus.max));
 }
 
 double SubjectSession::random(std::uint64_t index) const {
@@ -92,7 +104,8 @@ double SubjectSession::random(std::uint64_t index) const {
 int SubjectSession::interval_of(std::uint64_t index) const {
     const double u = random(3 * index);
     switch (protocol_.response.kind) {
-        case ResponseKind::choice: return 1 + static_cast<int>(u * protocol_.response.intervals);
+        case ResponseKind::choice:
+        case ResponseKind::adjust: return 1 + static_cast<int>(u * protocol_.response.intervals);
         case ResponseKind::yes_no: return u < 0.5 ? 1 : 0;
         case ResponseKind::same_different: return u < 0.5 ? 0 : u < 0.75 ? 1 : 2;
     }
@@ -103,8 +116,8 @@ bool SubjectSession::is_rule_done() const {
     const Method& method = protocol_.method;
     if (const auto* stairs = std::get_if<psychophysics::Staircase>(&state_.rule))
         return stairs->is_done() || state_.main >= method.trials;
-    if (const auto* constant = std::get_if<Constant>(&state_.rule))
-        return static_cast<std::size_t>(state_.main) >= constant->order.size();
+    if (const auto* listed = std::get_if<Listed>(&state_.rule))
+        return static_cast<std::size_t>(state_.main) >= listed->levels.size();
     return state_.main >= method.trials;
 }
 
@@ -112,8 +125,8 @@ double SubjectSession::rule_level() const {
     const Stimulus& stimulus = *protocol_.stimulus;
     if (const auto* stairs = std::get_if<psychophysics::Staircase>(&state_.rule))
         return stimulus.presentable(stimulus.level_at(stairs->level()));
-    if (const auto* constant = std::get_if<Constant>(&state_.rule))
-        return constant->order[static_cast<std::size_t>(state_.main)];
+    if (const auto* listed = std::get_if<Listed>(&state_.rule))
+        return listed->levels[static_cast<std::size_t>(state_.main)];
     return stimulus.presentable(stimulus.level_at(std::get<psychophysics::QuestPlus>(state_.rule).level()));
 }
 

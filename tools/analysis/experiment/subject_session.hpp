@@ -53,12 +53,13 @@ private:
         std::size_t condition = 0, task = 0;
         bool has_practice = false;
     };
-    struct Constant {
-        std::vector<double> order;
+    /// Levels that do not depend on answers: of constant stimuli, or those at which adjustments begin.
+    struct Listed {
+        std::vector<double> levels;
     };
     /// What happened in the current block.
     struct State {
-        std::variant<Constant, psychophysics::Staircase, psychophysics::QuestPlus> rule;
+        std::variant<Listed, psychophysics::Staircase, psychophysics::QuestPlus> rule;
         int practised = 0, in_a_row = 0;
         int presented = 0;  ///< main and catch trials
         int main = 0;  ///< of them main
@@ -71,6 +72,8 @@ private:
     bool is_rule_done() const;
     double rule_level() const;
     double random(std::uint64_t index) const;
+    /// Level near an end of the range at which a trial begins.
+    double start_of_adjustment(bool is_above, std::uint64_t trial) const;
     int interval_of(std::uint64_t index) const;
     void update_rule(const experiment::TrialRecord& trial);
 

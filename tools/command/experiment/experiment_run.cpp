@@ -50,25 +50,22 @@ public:
     }
 
     std::optional<analysis::Answered> ask(const experiment::Protocol& protocol) {
-        const experiment::Response& response = protocol.response;
-        std::string text = protocol.question.empty() ? std::string("Your answer?") : protocol.question;
-        for (std::size_t i = 0; i < response.keys.size(); ++i)
-            text += fmt::format("{} {} = {}", i == 0 ? "  [" : ",", response.keys[i], response.names[i]);
-        say(stdout, text + "; q ends]\n");
+        say(stdout, question_of(protocol));
         keys_.forget();
         const auto begin = std::chrono::steady_clock::now();
         while (const std::optional<char> key = keys_.read(stop_)) {
             if (*key == 'q') return std::nullopt;
-            const auto found = std::ranges::find(response.keys, std::string(1, *key));
-            if (found == response.keys.end()) continue;
+            const std::optional<int> answer = answer_of(protocol, *key);
+            if (!answer) continue;
             const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-            return analysis::Answered{static_cast<int>(found - response.keys.begin()), time.count()};
+            return analysis::Answered{*answer, time.count()};
         }
         return std::nullopt;
     }
 
-    analysis::LiveEnd perform(const run::RunChoice& choice, const experiment::Condition& condition,
-                              std::atomic<bool>& over) {
+    analysis::LiveEnd perform(const experiment::Protocol& protocol, const run::RunChoice& choice,
+                              const experiment::Condition& condition, std::atomic<bool>& over,
+                              analysis::TurnedLevel* turned) {
         analysis::LiveEnd end;
         if (has_window_) {
             window::ViewedRunChoice viewed;
@@ -88,10 +85,22 @@ public:
             return end;
         }
         run::RunSession run(choice, assets_);
+        if (turned) {
+            say(stdout, question_of(protocol));
+            keys_.forget();
+        }
         LiveLine line;
         run.run({[&] {
                      line.show(fmt::format("{:.1f} s of {:.1f} s", run.engine().progress_seconds(), *choice.seconds));
                      if (stop_) over = true;
+                     if (turned) turned->answer_by_ports(run.engine());
+                     // 'q' ends any trial at once. A pipe holds the answers of later trials.
+                     if (!turned && !KeyReader::is_terminal()) return;
+                     while (const std::optional<char> key = keys_.pressed()) {
+                         const auto answer = answer_of(protocol, *key);
+                         if (*key == 'q') end.is_ended = over = true;
+                         else if (turned && answer) turned->answer(*answer, run.engine());
+                     }
                  },
                  [](const std::string&) {}},
                 over);
@@ -103,6 +112,19 @@ public:
     }
 
 private:
+    static std::string question_of(const experiment::Protocol& protocol) {
+        const experiment::Response& response = protocol.response;
+        std::string text = protocol.question.empty() ? std::string("Your answer?") : protocol.question;
+        for (std::size_t i = 0; i < response.keys.size(); ++i)
+            text += fmt::format("{} {} = {}", i == 0 ? "  [" : ",", response.keys[i], response.names[i]);
+        return text + "; q ends]\n";
+    }
+    static std::optional<int> answer_of(const experiment::Protocol& protocol, char key) {
+        const auto found = std::ranges::find(protocol.response.keys, std::string(1, key));
+        if (found == protocol.response.keys.end()) return std::nullopt;
+        return static_cast<int>(found - protocol.response.keys.begin());
+    }
+
     bool has_window_;
     const std::atomic<bool>& stop_;
     KeyReader keys_;
@@ -142,6 +164,8 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     if (options.simulated == 0 && options.subject.empty()) throw Error("--subject PSEUDONYM is missing");
     if (options.drops_takes && !choice.model)
         throw Error("--no-takes is for simulated subjects: a person's trials cannot be had again");
+    if (options.has_window && choice.protocol.is_adjustment())
+        throw Error("--view: an adjustment is turned by keys of the terminal or ports of the patch; leave --view out");
     const std::atomic<bool>& stop = run::stop_on_signals();
     compile::AssetCache assets;
     analysis::check_levels(choice.protocol, assets, {}, nullptr);
@@ -152,8 +176,9 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     hooks.say = [&](const std::string& text) { say(stdout, text); };
     hooks.confirm = [&](const std::string& text, char key) { return person.confirm(text, key); };
     hooks.ask = [&](const experiment::Protocol& protocol) { return person.ask(protocol); };
-    hooks.perform = [&](const run::RunChoice& run, const experiment::Condition& condition, std::atomic<bool>& over) {
-        return person.perform(run, condition, over);
+    hooks.perform = [&](const run::RunChoice& run, const experiment::Condition& condition, std::atomic<bool>& over,
+                        analysis::TurnedLevel* turned) {
+        return person.perform(choice.protocol, run, condition, over, turned);
     };
     hooks.progress = [&](const analysis::TrialSpec& spec, int trials, int blocks) {
         if (choice.model)

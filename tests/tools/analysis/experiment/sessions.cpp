@@ -343,6 +343,31 @@ TEST_CASE("a protocol may name files above its own folder, and its data can be a
     CHECK(analyse_experiment(choice.out, {}).included == 2);
 }
 
+TEST_CASE("a session is resumed with the settings with which it began", "[slow]") {
+    const run::ScratchFolder scratch;
+    ExperimentChoice choice = simulated_choice(scratch.path(), "P01");
+    choice.settings = {"first.max_force=9 N"};
+    // Ended after three trials.
+    std::atomic<bool> stop{false};
+    ExperimentHooks hooks = silent();
+    hooks.progress = [&](const TrialSpec&, int trials, int) { stop = trials >= 3; };
+    CHECK_FALSE(run_experiment(choice, hooks, stop).is_complete);
+    CHECK(file::read_whole_file(choice.out / "experiment.json").find("first.max_force=9 N") != std::string::npos);
+    const std::string before = trials_of(scratch.path(), "P01");
+    choice.settings = {"first.max_force=8 N"};
+    const std::atomic<bool> never{false};
+    CHECK_THROWS_WITH(
+        run_experiment(choice, silent(), never),
+        Catch::Matchers::ContainsSubstring("were run with 'first.max_force=9 N', and now with 'first.max_force=8 N'"));
+    CHECK(trials_of(scratch.path(), "P01") == before);
+    choice.settings = {"first.max_force=9 N"};
+    CHECK(run_experiment(choice, silent(), never).is_complete);
+    // Another subject may have others; the analysis reports it.
+    choice.subject = "P02";
+    choice.settings.clear();
+    CHECK(run_experiment(choice, silent(), never).is_complete);
+}
+
 TEST_CASE("a subject who withdraws leaves nothing, and the next one inherits the row") {
     const run::ScratchFolder scratch;
     const experiment::Protocol protocol = short_protocol(scratch.path() / "files");
