@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the analysis makes of a group: known effects, carry-over, marked trials, mixed models, and the tables of BIDS. The trials are
+// written as a session writes them; nothing is rendered.
+#include "tools/analysis/experiment/analysis.hpp"
+#include "tools/analysis/experiment/experiment_folder.hpp"
+#include "tools/analysis/experiment/mixed_models.hpp"
+
+#include "assets/file/json.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/constants.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
+#include "tests/tools/json_schema.hpp"
+#include "tools/report/experiment/experiment_result.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/run/scratch_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using namespace tactus;
+using namespace tactus::analysis;
+using experiment::TrialRecord;
+namespace fs = std::filesystem;
+
+namespace {
+
+const experiment::Protocol& co_location_study() {
+    static const experiment::Protocol protocol =
+        experiment::load_protocol(test::source_folder() / "assets/library/experiments/co-location.toml");
+    return protocol;
+}
+
+struct StudyModel {
+    double time = 1.25;  ///< factor of the offset mode on the labyrinth
+    double left_behind = 1.0;  ///< factor of the offset mode on the labyrinth of the next period
+    std::function<void(TrialRecord&, std::size_t subject)> change{};
+};
+
+/// A study of the protocol's orders. Distances do not depend on the mode.
+void write_study(const fs::path& out, std::size_t subjects, const StudyModel& model, std::uint64_t seed = 1) {
+    const experiment::Protocol& protocol = co_location_study();
+    ExperimentFolder folder(out, protocol);
+    for (std::size_t s = 0; s < subjects; ++s) {
+        experiment::SubjectEntry entry = folder.enrol(fmt::format("S{:02}", s + 1), true);
+        entry.is_complete = true;
+        folder.update(entry);
+        const Random person{mix(seed) ^ mix(s + 1)};
+        std::vector<TrialRecord> trials;
+        const auto order = experiment::condition_order(protocol, entry.row);
+        const auto tasks = experiment::task_order(protocol, entry.row);
+        for (std::size_t period = 0; period < order.size(); ++period)
+            for (std::size_t place = 0; place < tasks.size(); ++place) {
+                const experiment::Task& task = protocol.tasks[tasks[place]];
+                TrialRecord trial;
+                trial.number = static_cast<int>(trials.size()) + 1;
+                trial.block = static_cast<int>(period * tasks.size() + place);
+                trial.condition = protocol.conditions[order[period]].name;
+                trial.task = task.name;
+                trial.folder = fmt::format("trial-{:04}", trial.number);
+                trial.is_simulated = true;
+                const bool is_offset = order[period] % 2 == 1, was_offset = period > 0 && order[period - 1] % 2 == 1;
+                const auto noise = [&](std::uint64_t of) { return person.normal(1000 * of + period * 10 + place); };
+                if (task.name == "labyrinth")
+                    trial.measures["time"] = 30.0 * std::exp(0.2 * person.normal(1) + 0.08 * noise(1)) *
+                                             (is_offset ? model.time : 1.0) * (was_offset ? model.left_behind : 1.0);
+                else trial.measures["distance"] = (4.0 + 0.5 * person.normal(2) + 0.4 * noise(2)) * mm;
+                if (task.name == "cube") trial.measures["time"] = 20.0 * std::exp(0.1 * noise(3));
+                if (task.name == "spiral") {
+                    trial.measures["beside"] = (2.0 + 0.2 * noise(4)) * mm;
+                    trial.measures["lag"] = 0.1 + 0.02 * noise(5);
+                }
+                if (model.change) model.change(trial, s);
+                trials.push_back(std::move(trial));
+            }
+        fs::create_directories(folder.subject_folder(entry.pseudonym));
+        experiment::save_trials(trials, folder.subject_folder(entry.pseudonym) / "trials.jsonl");
+    }
+}
+
+const AnalysedComparison& comparison_of(const ExperimentAnalysis& analysis, const std::string& label) {
+    for (const AnalysedComparison& one : analysis.comparisons)
+        if (one.label.find(label) == 0) return one;
+    FAIL("no comparison '" << label << "'");
+    throw;
+}
+
+bool has_lmer_test() { return std::system("Rscript --vanilla -e 'library(lmerTest)' > /dev/null 2>&1") == 0; }
+
+std::vector<std::vector<std::string>> rows_of(const fs::path& table) {
+    std::istringstream lines(file::read_whole_file(table));
+    std::vector<std::vector<std::string>> rows;
+    for (std::string line; std::getline(lines, line);) {
+        rows.emplace_back();
+        std::istringstream cells(line + "\t");
+        for (std::string cell; std::getline(cells, cell, '\t');) rows.back().push_back(cell);
+    }
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("an effect of co-location on time and none on accuracy come back as effect and as equivalence") {
+    const run::ScratchFolder scratch;
+    write_study(scratch.path() / "data", 16, {});
+    const ExperimentAnalysis analysis = analyse_experiment(scratch.path() / "data", {.bootstrap = 0});
+    CHECK(analysis.included == 16);
+    for (const char* label :
+         {"labyrinth time: mode offset - co-located (mirror)", "labyrinth time: mode offset - co-located (HOE)"}) {
+        const AnalysedComparison& time = comparison_of(analysis, label);
+        REQUIRE(time.test);
+        CHECK(time.is_log);
+        CHECK(verdict_of(time, 0.05) == "effect");
+        CHECK(std::exp(time.test->low) < 1.25);
+        CHECK(std::exp(time.test->high) > 1.25);
+    }
+    for (const char* label : {"cube distance", "spiral distance"}) {
+        const AnalysedComparison& distance = comparison_of(analysis, label);
+        REQUIRE(distance.equivalence);
+        CHECK(verdict_of(distance, 0.05) == "equivalent");
+        CHECK(distance.equivalence_power >= 0.9);
+    }
+}
+
+TEST_CASE("carry-over is an option that finds what the mode before left behind") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    write_study(data, 16, {.left_behind = 1.2});
+    CHECK_FALSE(comparison_of(analyse_experiment(data, {.bootstrap = 0}), "labyrinth").carry_over);
+    const ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0, .has_carry_over = true});
+    const AnalysedComparison& distance = comparison_of(analysis, "cube distance");
+    REQUIRE(distance.carry_over);
+    CHECK(distance.carry_over->variance_factor == Approx(11.0 / 7.0));
+    CHECK(distance.carry_over->carried_p > 0.01);
+    const AnalysedComparison& time = comparison_of(analysis, "labyrinth time: mode offset - co-located (mirror)");
+    REQUIRE(time.carry_over);
+    CHECK(std::exp(time.carry_over->carried) == Approx(1.2).epsilon(0.1));
+    CHECK(time.carry_over->carried_p < 0.01);
+    CHECK(std::exp(time.carry_over->effect) == Approx(1.25).epsilon(0.1));
+}
+
+TEST_CASE("where trials are marked, each comparison is tested with and without them") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    CHECK_FALSE([&] {
+        write_study(data, 8, {});
+        return comparison_of(analyse_experiment(data, {.bootstrap = 0}), "cube distance").other_marked.has_value();
+    }());
+    StudyModel model;
+    // A late trial of three subjects, with an error of 40 mm.
+    model.change = [](TrialRecord& trial, std::size_t subject) {
+        if (subject > 2 || trial.task != "cube" || trial.condition != "mirrorBeside") return;
+        trial.measures["distance"] = 40.0 * mm;
+        trial.marked = "a gap of 9 ms";
+    };
+    write_study(scratch.path() / "marked", 8, model);
+    const ExperimentAnalysis analysis = analyse_experiment(scratch.path() / "marked", {.bootstrap = 0});
+    const AnalysedComparison& distance = comparison_of(analysis, "cube distance");
+    REQUIRE(distance.other_marked);
+    CHECK(distance.test->of.count == 8);
+    CHECK(distance.test->of.mean > 5.0 * mm);
+    CHECK(distance.other_marked->of.count == 5);
+    CHECK(std::abs(distance.other_marked->of.mean) < 1.0 * mm);
+    for (const GroupValue& group : analysis.groups)
+        if (group.task == "cube") CHECK(group.marked == (group.condition == "mirrorBeside" ? 3 : 0));
+}
+
+TEST_CASE("results of an experiment follow their schema, with all parts and with none") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    write_study(data, 8, {});
+    const file::Json schema = report::schema_of_output({report::experiment_fields().schema()});
+    for (const bool has_all : {false, true}) {
+        const ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0, .has_carry_over = has_all});
+        report::FoundExperiment found{&analysis, {}};
+        if (has_all) {
+            found.mixed.emplace();
+            found.mixed->problem = "no R";
+        }
+        const report::Result result = report::experiment_fields().of(found);
+        CHECK(test::broken_rule(nlohmann::json::parse(schema.dump()),
+                                nlohmann::json::parse(report::output_json(result).dump()), "results") == "");
+        const std::string text = report::text_of(result);
+        CHECK(text.find("simulated data") != std::string::npos);
+        CHECK(text.find("inconclusive") + text.find("effect") != 2 * std::string::npos);
+        CHECK((text.find("widens the variance by 57 %") != std::string::npos) == has_all);
+        CHECK((text.find("no R") != std::string::npos) == has_all);
+        CHECK(report::html_of(result).find("<svg") != std::string::npos);
+    }
+}
+
+TEST_CASE("without R the data and the script of mixed models are written, and the result states that R is absent") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    write_study(data, 8, {});
+    const ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0});
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", scratch.path().c_str(), 1);
+    const std::atomic<bool> never{false};
+    const MixedModels models = fit_mixed_models(analysis, data, true, never);
+    setenv("PATH", path.c_str(), 1);
+    CHECK(models.problem.find("apt install r-base-core r-cran-lmertest") != std::string::npos);
+    CHECK(models.models.empty());
+    const auto rows = rows_of(data / "mixed/data.tsv");
+    // 8 subjects, 4 conditions, 6 measures.
+    REQUIRE(rows.size() == 1 + 8 * 4 * 6);
+    for (const auto& row : rows) CHECK(row.size() == rows.front().size());
+    const std::string script = file::read_whole_file(data / "mixed/model.R");
+    CHECK(script.find("effect * factor.display + period + before") != std::string::npos);
+    // What names the subjects goes with them.
+    ExperimentFolder folder(data);
+    folder.withdraw("S01");
+    CHECK_FALSE(fs::exists(data / "mixed"));
+}
+
+TEST_CASE("mixed models of R give the paired difference of a balanced study, and its error", "[long]") {
+    if (!has_lmer_test()) return test::skip("no R with lmerTest here");
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    write_study(data, 16, {});
+    const ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0});
+    const std::atomic<bool> never{false};
+    const MixedModels mixed = fit_mixed_models(analysis, data, false, never);
+    CHECK(mixed.problem.empty());
+    REQUIRE(mixed.models.size() == analysis.comparisons.size());
+    for (std::size_t i = 0; i < mixed.models.size(); ++i) {
+        const MixedModel& model = mixed.models[i];
+        const AnalysedComparison& comparison = analysis.comparisons[i];
+        CAPTURE(model.label, model.formula, model.note);
+        REQUIRE(model.effect);
+        REQUIRE(comparison.test);
+        // Modes and periods are orthogonal for 16 subjects.
+        CHECK(*model.effect == Approx(comparison.test->of.mean).epsilon(1e-6));
+        CHECK(*model.high - *model.low == Approx(comparison.test->high - comparison.test->low).epsilon(0.25));
+        CHECK((*model.p < 0.05) == (comparison.test->p < 0.05));
+        CHECK(*model.low < *model.effect);
+        const bool is_within = !comparison.of.within.empty();
+        CHECK(model.values == (is_within ? 32u : 64u));
+        CHECK((model.formula.find("factor.display") == std::string::npos) == is_within);
+    }
+    const MixedModels adjusted = fit_mixed_models(analysis, data, true, never);
+    for (std::size_t i = 0; i < adjusted.models.size(); ++i) {
+        CAPTURE(adjusted.models[i].formula, adjusted.models[i].note);
+        CHECK(adjusted.models[i].formula.find("+ before") != std::string::npos);
+        REQUIRE(adjusted.models[i].effect);
+    }
+}
+
+TEST_CASE("tables are as BIDS demands: a description of each column, n/a for what is missing, one task in each name") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    StudyModel model;
+    model.change = [](TrialRecord& trial, std::size_t subject) {
+        if (subject != 0 || trial.task != "cube") return;
+        trial.measures.erase("distance");
+        trial.is_finished = false;
+        trial.marked = "a gap of\t9 ms";
+    };
+    write_study(data, 4, model);
+    write_bids(analyse_experiment(data, {.bootstrap = 0}), data);
+    const file::Json description = file::Json::parse(file::read_whole_file(data / "dataset_description.json"));
+    CHECK(description["BIDSVersion"].get<std::string>() == "1.9.0");
+    CHECK_FALSE(description["Name"].get<std::string>().empty());
+    CHECK(fs::file_size(data / "README") > 20);
+    std::vector<fs::path> tables{data / "participants.tsv"};
+    for (int s = 1; s <= 4; ++s)
+        for (const char* task : {"cube", "spiral", "labyrinth"})
+            tables.push_back(data / fmt::format("sub-S{:02}/beh/sub-S{:02}_task-{}_beh.tsv", s, s, task));
+    for (const fs::path& table : tables) {
+        CAPTURE(table.string());
+        REQUIRE(fs::exists(table));
+        const auto rows = rows_of(table);
+        const file::Json about = file::Json::parse(file::read_whole_file(fs::path(table).replace_extension(".json")));
+        const std::set<std::string> names(rows.front().begin(), rows.front().end());
+        CHECK(names.size() == rows.front().size());
+        for (const std::string& name : rows.front()) {
+            CAPTURE(name);
+            CHECK(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos);
+            if (name == "participant_id") continue;
+            REQUIRE(about.contains(name));
+            CHECK(about[name].contains("Description"));
+        }
+        for (const auto& row : rows) {
+            CHECK(row.size() == rows.front().size());
+            for (const std::string& cell : row) CHECK_FALSE(cell.empty());
+        }
+    }
+    const auto participants = rows_of(data / "participants.tsv");
+    CHECK(participants.front().front() == "participant_id");
+    CHECK(participants.size() == 5);
+    CHECK(participants[1].front() == "sub-S01");
+    const auto cube = rows_of(tables[1]);
+    const auto at = [&](const char* name) {
+        return static_cast<std::size_t>(std::find(cube.front().begin(), cube.front().end(), name) -
+                                        cube.front().begin());
+    };
+    CHECK(cube[1][at("distance")] == "n/a");
+    // Distances are in the unit that the description states.
+    const file::Json about = file::Json::parse(file::read_whole_file(fs::path(tables[4]).replace_extension(".json")));
+    CHECK(about["distance"]["Units"].get<std::string>() == "mm");
+    const double distance = std::stod(rows_of(tables[4])[1][at("distance")]);
+    CHECK(distance > 1.0);
+    CHECK(distance < 8.0);
+}

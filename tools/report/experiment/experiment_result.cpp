@@ -1,0 +1,563 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/report/experiment/experiment_result.hpp"
+
+#include "dsp/core/units.hpp"
+#include "tools/report/figures/experiment_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace tactus::report {
+
+namespace {
+
+using analysis::AnalysedComparison;
+using analysis::AnalysedSubject;
+using analysis::ExperimentAnalysis;
+using analysis::GroupValue;
+using analysis::MixedModel;
+using analysis::SubjectThreshold;
+using experiment::Protocol;
+using Values = std::vector<std::pair<std::string, std::optional<double>>>;
+
+constexpr std::size_t max_printed_thresholds = 24;  // in a terminal
+
+std::string p_text(double p) { return p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p); }
+
+std::string with_unit(std::string text, const std::string& unit) { return unit.empty() ? text : text + " " + unit; }
+
+/// A comparison with what its numbers mean.
+struct Compared {
+    const AnalysedComparison* of;
+    const Protocol* protocol;
+    std::string unit;
+    double factor = 1.0;  ///< of the unit
+
+    bool is_tested() const { return of->test.has_value(); }
+    /// In the shown unit; differences of logarithms have none.
+    double shown(double difference) const { return of->is_log ? difference : difference / factor; }
+    std::string text(double difference) const {
+        return of->is_log ? fmt::format("×{:.3f}", std::exp(difference)) : fmt::format("{:.4g}", shown(difference));
+    }
+    std::string text(double value, double low, double high) const {
+        return with_unit(fmt::format("{} ({} to {})", text(value), text(low), text(high)), of->is_log ? "" : unit);
+    }
+};
+
+Compared compared(const AnalysedComparison& one, const Protocol& protocol) {
+    Compared result{&one, &protocol, analysis::unit_of(protocol, one.of.task, one.of.measure), 1.0};
+    result.factor = parse_unit(result.unit).factor;
+    return result;
+}
+
+/// A number of a comparison that was tested.
+template <class Read>
+auto tested(Read read) {
+    return [read](const Compared& c) { return c.is_tested() ? std::optional<double>(read(c)) : std::nullopt; };
+}
+
+const Fields<Compared>& equivalence_fields() {
+    using C = Compared;
+    static const Fields<C> all =
+        Fields<C>("test of equivalence")
+            .number("margin_sd", "", significant(3), [](const C& c) { return *c.of->of.margin; })
+            .number("p", "", significant(4), [](const C& c) { return c.of->equivalence->p; })
+            .number("low_sd", "", significant(4), [](const C& c) { return c.of->effect_interval.first; })
+            .number("high_sd", "", significant(4), [](const C& c) { return c.of->effect_interval.second; })
+            .number("power_without_effect", "", significant(3), [](const C& c) { return c.of->equivalence_power; });
+    return all;
+}
+
+const Fields<Compared>& period_fields() {
+    using C = Compared;
+    static const Fields<C> all =
+        Fields<C>("difference adjusted for the period, where both orders occur")
+            .number("effect", "", significant(4), [](const C& c) { return c.shown(c.of->cross_over->period); })
+            .number("p", "", significant(4), [](const C& c) { return c.of->cross_over->period_p; })
+            .number("adjusted_difference", "", significant(4),
+                    [](const C& c) { return c.shown(c.of->cross_over->effect); })
+            .number("adjusted_low", "", significant(4), [](const C& c) { return c.shown(c.of->cross_over->low); })
+            .number("adjusted_high", "", significant(4), [](const C& c) { return c.shown(c.of->cross_over->high); })
+            .number("adjusted_p", "", significant(4), [](const C& c) { return c.of->cross_over->p; });
+    return all;
+}
+
+const Fields<Compared>& carry_over_fields() {
+    using C = Compared;
+    static const Fields<C> all =
+        Fields<C>("difference adjusted for periods and carry-over")
+            .number("effect", "", significant(4), [](const C& c) { return c.shown(c.of->carry_over->carried); })
+            .number("p", "", significant(4), [](const C& c) { return c.of->carry_over->carried_p; })
+            .number("adjusted_difference", "", significant(4),
+                    [](const C& c) { return c.shown(c.of->carry_over->effect); })
+            .number("adjusted_low", "", significant(4), [](const C& c) { return c.shown(c.of->carry_over->low); })
+            .number("adjusted_high", "", significant(4), [](const C& c) { return c.shown(c.of->carry_over->high); })
+            .number("adjusted_p", "", significant(4), [](const C& c) { return c.of->carry_over->p; })
+            .number("degrees_of_freedom", "", significant(4), [](const C& c) { return c.of->carry_over->freedom; })
+            .number("variance_factor", "", significant(4),
+                    [](const C& c) { return c.of->carry_over->variance_factor; });
+    return all;
+}
+
+const Fields<Compared>& marked_fields() {
+    using C = Compared;
+    static const Fields<C> all =
+        Fields<C>("the test with the marked trials treated the other way")
+            .number("difference", "", significant(4), [](const C& c) { return c.shown(c.of->other_marked->of.mean); })
+            .number("low", "", significant(4), [](const C& c) { return c.shown(c.of->other_marked->low); })
+            .number("high", "", significant(4), [](const C& c) { return c.shown(c.of->other_marked->high); })
+            .number("p", "", significant(4), [](const C& c) { return c.of->other_marked->p; });
+    return all;
+}
+
+/// The member `read` of a comparison, if it has one.
+template <class Read>
+auto if_has(Read read) {
+    return [read](const Compared& c) { return read(*c.of) ? &c : nullptr; };
+}
+
+const Fields<Compared>& comparison_fields() {
+    using C = Compared;
+    static const Fields<C> all =
+        Fields<C>("comparison of two levels of a factor")
+            .text("comparison", "comparison", [](const C& c) { return c.of->label; })
+            .integer("subjects", "n", [](const C& c) { return c.of->differences.size(); })
+            .flag("logarithms", "", [](const C& c) { return c.of->is_log; })
+            .text("unit", "", [](const C& c) { return c.of->is_log ? std::string() : c.unit; })
+            .number("difference", "", significant(4), tested([](const C& c) { return c.shown(c.of->test->of.mean); }))
+            .number("low", "", significant(4), tested([](const C& c) { return c.shown(c.of->test->low); }))
+            .number("high", "", significant(4), tested([](const C& c) { return c.shown(c.of->test->high); }))
+            .number("deviation", "", significant(4),
+                    tested([](const C& c) { return c.shown(c.of->test->of.deviation); }))
+            .number("t", "", significant(4), tested([](const C& c) { return c.of->test->t; }))
+            .number("degrees_of_freedom", "", significant(4), tested([](const C& c) { return c.of->test->freedom; }))
+            .number("p", "", significant(4), tested([](const C& c) { return c.of->test->p; }))
+            .number("p_permutation", "", significant(4), tested([](const C& c) { return c.of->permutation->p; }))
+            .number("p_holm", "", significant(4), tested([](const C& c) { return c.of->adjusted_p; }))
+            .number("effect_of_80_percent_power_sd", "", significant(4),
+                    tested([](const C& c) { return c.of->detectable; }))
+            .child("equivalence", "", equivalence_fields(),
+                   if_has([](const AnalysedComparison& o) { return o.equivalence.has_value(); }))
+            .child("period", "", period_fields(),
+                   if_has([](const AnalysedComparison& o) { return o.cross_over.has_value(); }))
+            .child("carry_over", "", carry_over_fields(),
+                   if_has([](const AnalysedComparison& o) { return o.carry_over.has_value(); }))
+            .omitted()
+            .child("other_marked", "", marked_fields(),
+                   if_has([](const AnalysedComparison& o) { return o.other_marked.has_value(); }))
+            .omitted()
+            .text("", "difference (95 %)",
+                  [](const C& c) {
+                      return c.is_tested() ? c.text(c.of->test->of.mean, c.of->test->low, c.of->test->high)
+                                           : "not tested: " + c.of->problem;
+                  })
+            .text("", "p", [](const C& c) { return c.is_tested() ? p_text(c.of->test->p) : std::string(); })
+            .text("", "permutation",
+                  [](const C& c) { return c.is_tested() ? p_text(c.of->permutation->p) : std::string(); })
+            .text("", "Holm", [](const C& c) { return c.is_tested() ? p_text(c.of->adjusted_p) : std::string(); })
+            .text("", "equivalence",
+                  [](const C& c) { return c.of->equivalence ? p_text(c.of->equivalence->p) : std::string(); })
+            .text("verdict", "verdict", [](const C& c) { return analysis::verdict_of(*c.of, c.protocol->alpha); })
+            .text("problem", "", [](const C& c) { return c.of->problem; });
+    return all;
+}
+
+/// What a comparison could have shown, and how it changes with its adjustments.
+std::vector<std::string> notes_of(const ExperimentAnalysis& analysis) {
+    std::vector<std::string> notes;
+    for (const AnalysedComparison& one : analysis.comparisons) {
+        if (!one.test) continue;
+        const Compared c = compared(one, analysis.protocol);
+        const double found = one.detectable * one.test->of.deviation;
+        std::string text = fmt::format(
+            "{}: with {} subjects the t test finds {:.2f} standard deviations of the difference ({}) with 80 % power",
+            one.label, one.differences.size(), one.detectable, with_unit(c.text(found), one.is_log ? "" : c.unit));
+        if (one.of.margin)
+            text += fmt::format(
+                "; equivalence within {:.2g} standard deviations is shown in {:.0f} % of studies without an effect",
+                *one.of.margin, 100.0 * one.equivalence_power);
+        if (one.cross_over)
+            text += fmt::format(
+                "; period effect p {}, difference adjusted for it {}, p {}", p_text(one.cross_over->period_p),
+                c.text(one.cross_over->effect, one.cross_over->low, one.cross_over->high), p_text(one.cross_over->p));
+        notes.push_back(std::move(text));
+        if (one.carry_over)
+            notes.push_back(fmt::format(
+                "{}: carry-over {}, p {}; difference adjusted for it {}, p {}; the adjustment widens the variance by "
+                "{:.0f} %",
+                one.label, c.text(one.carry_over->carried, one.carry_over->carried_low, one.carry_over->carried_high),
+                p_text(one.carry_over->carried_p),
+                c.text(one.carry_over->effect, one.carry_over->low, one.carry_over->high), p_text(one.carry_over->p),
+                100.0 * (one.carry_over->variance_factor - 1.0)));
+        if (!one.carry_over_problem.empty())
+            notes.push_back(fmt::format("{}: no adjustment for carry-over: {}", one.label, one.carry_over_problem));
+        if (one.other_marked)
+            notes.push_back(
+                fmt::format("{}: {} the marked trials {}, p {}", one.label,
+                            analysis.protocol.is_psychophysics() ? "with" : "without",
+                            c.text(one.other_marked->of.mean, one.other_marked->low, one.other_marked->high),
+                            p_text(one.other_marked->p)));
+    }
+    return notes;
+}
+
+struct Group {
+    const GroupValue* of;
+    std::string unit;
+    double factor = 1.0;
+};
+
+const Fields<Group>& group_fields() {
+    using G = Group;
+    const auto in_unit = [](double GroupValue::* member, std::size_t needed) {
+        return [member, needed](const G& g) {
+            return g.of->count >= needed ? std::optional(g.of->*member / g.factor) : std::nullopt;
+        };
+    };
+    static const Fields<G> all =
+        Fields<G>("values of the group in one condition")
+            .text("task", "task", [](const G& g) { return g.of->task; })
+            .text("measure", "measure", [](const G& g) { return g.of->measure; })
+            .text("condition", "condition", [](const G& g) { return g.of->condition; })
+            .integer("subjects", "n", [](const G& g) { return g.of->count; })
+            .number("mean", "mean", significant(4), in_unit(&GroupValue::mean, 1))
+            .number("low", "", significant(4), in_unit(&GroupValue::low, 2))
+            .number("high", "", significant(4), in_unit(&GroupValue::high, 2))
+            .text("", "95 %",
+                  [](const G& g) {
+                      return g.of->count > 1
+                                 ? fmt::format("{:.4g} to {:.4g}", g.of->low / g.factor, g.of->high / g.factor)
+                                 : std::string();
+                  })
+            .text("unit", "unit", [](const G& g) { return g.unit; })
+            .integer("marked", "marked trials", [](const G& g) { return g.of->marked; })
+            .flag("geometric", "", [](const G& g) { return g.of->is_log; });
+    return all;
+}
+
+/// A subject in one condition.
+struct Threshold {
+    std::string subject;
+    const SubjectThreshold* of;
+    const Protocol* protocol;
+    double factor = 1.0;
+
+    std::optional<double> shown(const std::optional<double>& level) const {
+        return level ? std::optional(*level / factor) : std::nullopt;
+    }
+    /// Mean match of a direction, in the unit of levels.
+    std::optional<double> match(double psychophysics::AdjustedLevel::* member) const {
+        return of->adjusted ? shown(protocol->stimulus->level_at((*of->adjusted).*member)) : std::nullopt;
+    }
+};
+
+std::optional<double> low_of(const Threshold& t) {
+    return t.of->interval ? t.shown(t.of->interval->low) : std::nullopt;
+}
+std::optional<double> high_of(const Threshold& t) {
+    return t.of->interval ? t.shown(t.of->interval->high) : std::nullopt;
+}
+
+const Fields<Threshold>& threshold_fields() {
+    using T = Threshold;
+    using psychophysics::AdjustedLevel;
+    static const Fields<T> all =
+        Fields<T>("threshold, or match by adjustment, of a subject in one condition")
+            .text("subject", "subject", &T::subject)
+            .text("condition", "condition", [](const T& t) { return t.of->condition; })
+            .number("threshold", "", significant(4), [](const T& t) { return t.shown(t.of->threshold); })
+            .text("", "level",
+                  [](const T& t) {
+                      return t.of->threshold ? fmt::format("{:.4g}", *t.shown(t.of->threshold)) : "not identified";
+                  })
+            .number("low", "", significant(4), low_of)
+            .number("high", "", significant(4), high_of)
+            .text("", "95 %",
+                  [](const T& t) {
+                      return t.of->interval ? fmt::format("{:.4g} to {:.4g}", *low_of(t), *high_of(t)) : std::string();
+                  })
+            .number("with_marked", "with marked trials", significant(4),
+                    [](const T& t) { return t.shown(t.of->with_marked); })
+            .number("slope", "slope", significant(3),
+                    [](const T& t) { return t.of->fit ? std::optional(t.of->fit->function.slope) : std::nullopt; })
+            .number("d_prime", "d′", significant(3), [](const T& t) { return t.of->d_prime; })
+            .number("criterion", "criterion", significant(3), [](const T& t) { return t.of->criterion; })
+            .number("from_below", "from below", significant(4),
+                    [](const T& t) { return t.match(&AdjustedLevel::below); })
+            .number("from_above", "from above", significant(4),
+                    [](const T& t) { return t.match(&AdjustedLevel::above); })
+            .number("match_deviation", "deviation", significant(3),
+                    [](const T& t) { return t.of->adjusted ? std::optional(t.of->adjusted->deviation) : std::nullopt; })
+            .number("max_level_error", "", significant(3), [](const T& t) { return t.of->max_level_error; });
+    return all;
+}
+
+struct Subject {
+    const AnalysedSubject* of;
+    const Protocol* protocol;
+};
+
+Values marked_in(const Subject& s) {
+    Values all;
+    for (const auto& [condition, count] : s.of->marked_in) all.emplace_back(condition, count);
+    return all;
+}
+
+const Fields<Subject>& subject_fields() {
+    using S = Subject;
+    static const Fields<S> all =
+        Fields<S>("a subject")
+            .text("subject", "subject", [](const S& s) { return s.of->entry.pseudonym; })
+            .integer("order_row", "order", [](const S& s) { return s.of->entry.row + 1; })
+            .integer("trials", "trials", [](const S& s) { return s.of->trials; })
+            .integer("marked", "marked", [](const S& s) { return s.of->marked; })
+            .numbers("marked_in", marked_in)
+            .text("", "catch trials correct",
+                  [](const S& s) {
+                      return s.of->catch_trials > 0 ? fmt::format("{} of {}", s.of->catch_correct, s.of->catch_trials)
+                                                    : std::string();
+                  })
+            .text("excluded", "left out", [](const S& s) { return s.of->excluded; })
+            .numbers("means", [](const S& s) {
+                Values all_;
+                for (const auto& [name, value] : s.of->means) all_.emplace_back(name, value);
+                return all_;
+            });
+    return all;
+}
+
+/// A fitted model with the comparison that it belongs to.
+struct Modelled {
+    const MixedModel* of;
+    double factor = 1.0;
+    std::string unit;
+
+    std::optional<double> shown(const std::optional<double>& difference) const {
+        return difference ? std::optional(of->is_log ? *difference : *difference / factor) : std::nullopt;
+    }
+    std::string text(double difference) const {
+        return of->is_log ? fmt::format("×{:.3f}", std::exp(difference)) : fmt::format("{:.4g}", difference / factor);
+    }
+};
+
+const Fields<Modelled>& model_fields() {
+    using M = Modelled;
+    static const Fields<M> all =
+        Fields<M>("mixed model of a comparison, by R with lmerTest")
+            .text("comparison", "comparison", [](const M& m) { return m.of->label; })
+            .integer("values", "values", [](const M& m) { return m.of->values; })
+            .number("difference", "", significant(4), [](const M& m) { return m.shown(m.of->effect); })
+            .number("low", "", significant(4), [](const M& m) { return m.shown(m.of->low); })
+            .number("high", "", significant(4), [](const M& m) { return m.shown(m.of->high); })
+            .text("", "difference (95 %)",
+                  [](const M& m) {
+                      return m.of->effect && m.of->low && m.of->high
+                                 ? with_unit(fmt::format("{} ({} to {})", m.text(*m.of->effect), m.text(*m.of->low),
+                                                         m.text(*m.of->high)),
+                                             m.of->is_log ? "" : m.unit)
+                                 : std::string();
+                  })
+            .number("degrees_of_freedom", "df", fixed(1), [](const M& m) { return m.of->freedom; })
+            .number("p", "", significant(4), [](const M& m) { return m.of->p; })
+            .text("", "p", [](const M& m) { return m.of->p ? p_text(*m.of->p) : std::string(); })
+            .number("subject_deviation", "", significant(4),
+                    [](const M& m) { return m.shown(m.of->subject_deviation); })
+            .number("effect_deviation", "", significant(4), [](const M& m) { return m.shown(m.of->effect_deviation); })
+            .number("residual_deviation", "", significant(4),
+                    [](const M& m) { return m.shown(m.of->residual_deviation); })
+            .text("formula", "formula", [](const M& m) { return m.of->formula; })
+            .text("note", "note", [](const M& m) { return m.of->note; });
+    return all;
+}
+
+struct Mixed {
+    const analysis::MixedModels* of;
+    const ExperimentAnalysis* analysis;
+};
+
+const Fields<Mixed>& mixed_fields() {
+    using M = Mixed;
+    static const Fields<M> all =
+        Fields<M>("mixed models by R")
+            .titled([](const M&) { return "Mixed models"; })
+            .warnings("problem",
+                      [](const M& m) {
+                          return m.of->problem.empty() ? std::vector<std::string>() : std::vector{m.of->problem};
+                      })
+            .rows("models", "models", model_fields(), [](const M& m) {
+                std::vector<Modelled> models;
+                for (const MixedModel& one : m.of->models)
+                    for (const AnalysedComparison& comparison : m.analysis->comparisons)
+                        if (comparison.label == one.label) {
+                            const std::string unit =
+                                analysis::unit_of(m.analysis->protocol, comparison.of.task, comparison.of.measure);
+                            models.push_back({&one, parse_unit(unit).factor, unit});
+                            break;
+                        }
+                return models;
+            });
+    return all;
+}
+
+/// A figure of one measure, drawn when a format shows it: what it needs lives as long as the analysis.
+Result figure_of(const ExperimentAnalysis& analysis, const std::string& task, const std::string& measure) {
+    Result result;
+    result.entries.push_back(
+        {"", "Blue: subjects. Red: mean with its interval of 95 %, of logarithms where the axis is logarithmic", false,
+         Severity::none, ResultEntry::Picture{[&analysis, task, measure](const FigureStyle&) {
+             return draw_group(analysis, task, measure);
+         }}});
+    return result;
+}
+
+const Fields<FoundExperiment>& no_fields() {
+    static const Fields<FoundExperiment> all("figure of a measure");
+    return all;
+}
+
+std::vector<std::string> warnings_of(const FoundExperiment& f) {
+    std::vector<std::string> all;
+    if (f.analysis->is_simulated)
+        all.emplace_back(
+            "simulated data: some or all subjects are models; this shows that the experiment and its analysis "
+            "work, and nothing about people");
+    if (f.analysis->is_rehearsal)
+        all.emplace_back("rehearsal: some sessions had no haptic device or no registered display");
+    const AnalysedSubject* first = nullptr;
+    for (const AnalysedSubject& subject : f.analysis->subjects) {
+        if (!subject.excluded.empty()) continue;
+        if (!first) first = &subject;
+        if (subject.entry.settings == first->entry.settings) continue;
+        all.push_back(fmt::format("{} and {} differ in --set or --asset: the group mixes them", first->entry.pseudonym,
+                                  subject.entry.pseudonym));
+        break;
+    }
+    for (const AnalysedSubject& subject : f.analysis->subjects)
+        if (!subject.excluded.empty())
+            all.push_back(fmt::format("{} is left out: {}", subject.entry.pseudonym, subject.excluded));
+    return all;
+}
+
+std::vector<std::string> meanings_of(const FoundExperiment& f) {
+    const Protocol& protocol = f.analysis->protocol;
+    std::vector<std::string> all;
+    if (!protocol.comparisons.empty())
+        all.insert(
+            all.end(),
+            {"Paired t tests, two-sided; permutation tests flip signs. Holm's adjustment is over all comparisons of "
+             "the "
+             "table. Equivalence: the t statistic against the non-central t at the margin that the protocol states.",
+             "Inconclusive means that neither an effect nor its absence was shown."});
+    if (protocol.is_adjustment())
+        all.emplace_back(
+            "Level: mean of the matches from below and from above. Deviation: of a match about the mean of its "
+            "direction, on the axis of the stimulus.");
+    else if (protocol.is_psychophysics())
+        all.push_back(
+            fmt::format("Level with a probability of {:.3g}. Intervals: parametric bootstrap; for adaptive methods it "
+                        "ignores that the levels depended on the answers.",
+                        protocol.method.target));
+    return all;
+}
+
+}  // namespace
+
+const Fields<FoundExperiment>& experiment_fields() {
+    using F = FoundExperiment;
+    static const Fields<F> all =
+        Fields<F>("analysis of an experiment")
+            .titled([](const F& f) { return f.analysis->protocol.title; })
+            .warnings("warnings", warnings_of)
+            .text("experiment", "", [](const F& f) { return f.analysis->protocol.name; })
+            .text("", "experiment", [](const F& f) { return f.analysis->protocol.about; })
+            .on_pages()
+            .flag("simulated", "", [](const F& f) { return f.analysis->is_simulated; })
+            .flag("rehearsal", "", [](const F& f) { return f.analysis->is_rehearsal; })
+            .integer("included", "", [](const F& f) { return f.analysis->included; })
+            .text("", "subjects in the group",
+                  [](const F& f) { return fmt::format("{} of {}", f.analysis->included, f.analysis->subjects.size()); })
+            .rows("groups", "group", group_fields(),
+                  [](const F& f) {
+                      std::vector<Group> groups;
+                      for (const GroupValue& one : f.analysis->groups) {
+                          const std::string unit = analysis::unit_of(f.analysis->protocol, one.task, one.measure);
+                          groups.push_back({&one, unit, parse_unit(unit).factor});
+                      }
+                      return groups;
+                  })
+            .rows("comparisons", "comparisons", comparison_fields(),
+                  [](const F& f) {
+                      std::vector<Compared> comparisons;
+                      for (const AnalysedComparison& one : f.analysis->comparisons)
+                          comparisons.push_back(compared(one, f.analysis->protocol));
+                      return comparisons;
+                  })
+            .figure(
+                "Differences of the comparisons",
+                [](const F& f) {
+                    return std::ranges::any_of(f.analysis->comparisons,
+                                               [](const AnalysedComparison& one) { return one.test.has_value(); });
+                },
+                [](const F& f) { return draw_effects(*f.analysis); })
+            .notes("", "what this number of subjects can show", [](const F& f) { return notes_of(*f.analysis); })
+            .child("mixed_models", "mixed models", mixed_fields(),
+                   [](const F& f) { return f.mixed ? std::optional(Mixed{&*f.mixed, f.analysis}) : std::nullopt; })
+            .omitted()
+            .results("", "figures", no_fields(),
+                     [](const F& f) {
+                         std::vector<Result> figures;
+                         const Protocol& protocol = f.analysis->protocol;
+                         if (protocol.is_psychophysics()) figures.push_back(figure_of(*f.analysis, "", "threshold"));
+                         for (const experiment::Task& task : protocol.tasks)
+                             for (const experiment::Measure& measure : task.measures)
+                                 figures.push_back(figure_of(*f.analysis, task.name, measure.name));
+                         return figures;
+                     })
+            .on_pages()
+            .figure(
+                "Answers of each subject, and fitted functions",
+                [](const F& f) {
+                    return f.analysis->protocol.is_psychophysics() && !f.analysis->protocol.is_adjustment();
+                },
+                [](const F& f) { return draw_psychometric(*f.analysis); })
+            .figure(
+                "Matches of each subject", [](const F& f) { return f.analysis->protocol.is_adjustment(); },
+                [](const F& f) { return draw_matches(*f.analysis); })
+            .rows("thresholds", "thresholds", threshold_fields(),
+                  [](const F& f) {
+                      std::vector<Threshold> thresholds;
+                      const Protocol& protocol = f.analysis->protocol;
+                      for (const AnalysedSubject& subject : f.analysis->subjects)
+                          for (const SubjectThreshold& one : subject.thresholds)
+                              thresholds.push_back({subject.entry.pseudonym, &one, &protocol,
+                                                    parse_unit(protocol.stimulus->level_unit()).factor});
+                      return thresholds;
+                  })
+            .printed([](const F& f) {
+                std::size_t rows = 0;
+                for (const AnalysedSubject& subject : f.analysis->subjects) rows += subject.thresholds.size();
+                return rows > max_printed_thresholds ? Where::pages : Where::everywhere;
+            })
+            .text("level_unit", "",
+                  [](const F& f) {
+                      return f.analysis->protocol.stimulus ? f.analysis->protocol.stimulus->level_unit()
+                                                           : std::string();
+                  })
+            .rows("subjects", "subjects", subject_fields(),
+                  [](const F& f) {
+                      std::vector<Subject> subjects;
+                      for (const AnalysedSubject& one : f.analysis->subjects)
+                          subjects.push_back({&one, &f.analysis->protocol});
+                      return subjects;
+                  })
+            .on_pages()
+            .notes("", "how to read the tests", meanings_of)
+            .on_pages();
+    return all;
+}
+
+}  // namespace tactus::report
