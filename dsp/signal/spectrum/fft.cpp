@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/fft.hpp"
 
+#include "dsp/signal/spectrum/fft_kernel.hpp"
 #include "dsp/signal/spectrum/lane_scalar.hpp"
 
 #include <kissfft/kissfft.hh>
@@ -31,9 +32,55 @@ bool is_smooth(std::size_t n) {
     return n == 1;
 }
 
+struct AnyMachine;
+
 }  // namespace
 
 namespace detail {
+
+template <class T>
+const LaneKernels<T>& lane_kernels() noexcept {
+    static constexpr LaneKernels<T> anywhere = LaneKernels<T>::template of<AnyMachine>();
+#if defined(__x86_64__)
+    static const LaneKernels<T>& chosen = __builtin_cpu_supports("avx2") ? lane_kernels_of_avx2<T>() : anywhere;
+    return chosen;
+#else
+    return anywhere;
+#endif
+}
+
+namespace {
+
+/// The loops over numbers, with the interface of those over lanes.
+template <class T, class V>
+struct Kernels : FftKernel<AnyMachine, T, V> {};
+template <class T>
+struct Kernels<T, Lanes<T>> {
+    static void transform(const Lanes<T>* in, Lanes<T>* out, std::size_t n, const T* turns) noexcept {
+        lane_kernels<T>().transform(in, out, n, turns);
+    }
+    static void separate(Lanes<T>* z, std::size_t last, const T* turns) noexcept {
+        lane_kernels<T>().separate(z, last, turns);
+    }
+};
+
+template <class T>
+std::vector<T> fft_turns(std::size_t n) {
+    // Rounded as in KissFFT.
+    const T step = -2 * std::acos(static_cast<T>(-1)) / static_cast<T>(n);
+    std::vector<T> turns;
+    const std::size_t first = FftKernel<AnyMachine, T, T>::first_length(n);
+    for (std::size_t m = first == 8 ? 2 : 4; m < n; m *= 4)
+        for (std::size_t k = 0; k < m; ++k)
+            for (std::size_t j = 1; j <= 3; ++j) {
+                const T angle = static_cast<T>(j * k * (n / (4 * m))) * step;
+                turns.push_back(std::cos(angle));
+                turns.push_back(std::sin(angle));
+            }
+    return turns;
+}
+
+}  // namespace
 
 /// The number type of KissFFT. Interleaved values are std::complex of it.
 template <class V>
@@ -71,22 +118,26 @@ struct FftPlan<T, V>::Kiss {
 /// exp(−πik²/n), the transform of its conjugate, and two work arrays for the convolution.
 template <class T, class V>
 struct FftPlan<T, V>::Chirp {
+    explicit Chirp(std::size_t convolved) : length(convolved), plan(convolved), work(4 * convolved) {}
+
     std::size_t length;
+    FftPlan plan;
     std::vector<T> turn, kernel;
-    std::vector<V> work;
+    LineVector<V> work;
 };
 
 template <class T, class V>
 FftPlan<T, V>::FftPlan(std::size_t n) : n_(n) {
+    if (n >= 4 && std::has_single_bit(n)) {
+        turns_ = fft_turns<T>(n);
+        return;
+    }
     if (is_smooth(n)) {
         kiss_ = std::make_unique<Kiss>(n);
         return;
     }
     const std::size_t length = std::bit_ceil(2 * n - 1);
-    kiss_ = std::make_unique<Kiss>(length);
-    chirp_ = std::make_unique<Chirp>();
-    chirp_->length = length;
-    chirp_->work.resize(4 * length);
+    chirp_ = std::make_unique<Chirp>(length);
     FftPlan<T, T> plan(length);
     std::vector<T> a(2 * length), b(2 * length);
     for (std::size_t k = 0; k < n; ++k) {
@@ -105,7 +156,8 @@ FftPlan<T, V>::~FftPlan() = default;
 template <class T, class V>
 FftPlan<T, V>::FftPlan(const FftPlan& other)
     : n_(other.n_),
-      kiss_(std::make_unique<Kiss>(*other.kiss_)),
+      turns_(other.turns_),
+      kiss_(other.kiss_ ? std::make_unique<Kiss>(*other.kiss_) : nullptr),
       chirp_(other.chirp_ ? std::make_unique<Chirp>(*other.chirp_) : nullptr) {}
 template <class T, class V>
 FftPlan<T, V>::FftPlan(FftPlan&&) noexcept = default;
@@ -119,7 +171,8 @@ FftPlan<T, V>& FftPlan<T, V>::operator=(FftPlan&&) noexcept = default;
 template <class T, class V>
 V* FftPlan<T, V>::operator()(V* a, V* b) noexcept {
     if (chirp_) return through_chirp(a);
-    (*kiss_)(a, b);
+    if (kiss_) (*kiss_)(a, b);
+    else Kernels<T, V>::transform(a, b, n_, turns_.data());
     return b;
 }
 
@@ -133,7 +186,7 @@ V* FftPlan<T, V>::through_chirp(V* a) noexcept {
         u[i + 1] = a[i] * turn[i + 1] + a[i + 1] * turn[i];
     }
     std::fill(u + 2 * n_, u + 2 * length, V{});
-    (*kiss_)(u, v);
+    chirp_->plan(u, v);
     // Swaps real and imaginary parts: the following forward transform is then the inverse, in place.
     for (std::size_t i = 0; i < 2 * length; i += 2) {
         const V re = v[i] * kernel[i] - v[i + 1] * kernel[i + 1];
@@ -141,7 +194,7 @@ V* FftPlan<T, V>::through_chirp(V* a) noexcept {
         v[i] = im;
         v[i + 1] = re;
     }
-    (*kiss_)(v, u);
+    chirp_->plan(v, u);
     for (std::size_t i = 0; i < 2 * n_; i += 2) {
         const V re = u[i + 1], im = u[i];
         a[i] = re * turn[i] - im * turn[i + 1];
@@ -171,26 +224,8 @@ const V* RealFftPlan<T, V>::forward() noexcept {
         }
         return plan_(a, b_.data());
     }
-    // Even and odd samples formed one complex series of half the length: separate their transforms.
     V* z = plan_(a, b_.data());
-    const T half = T{0.5};
-    const std::size_t last = n_ / 2;
-    const V first_re = z[0], first_im = z[1];
-    z[0] = first_re + first_im;
-    z[1] = V{};
-    z[2 * last] = first_re - first_im;
-    z[2 * last + 1] = V{};
-    for (std::size_t k = 1; 2 * k <= last; ++k) {
-        V *low = z + 2 * k, *high = z + 2 * (last - k);
-        const V even_re = (low[0] + high[0]) * half, even_im = (low[1] - high[1]) * half;
-        const V odd_re = (low[1] + high[1]) * half, odd_im = (high[0] - low[0]) * half;
-        const T c = turns_[2 * k], s = turns_[2 * k + 1];
-        const V turned_re = odd_re * c - odd_im * s, turned_im = odd_re * s + odd_im * c;
-        high[0] = even_re - turned_re;
-        high[1] = turned_im - even_im;
-        low[0] = even_re + turned_re;
-        low[1] = even_im + turned_im;
-    }
+    Kernels<T, V>::separate(z, n_ / 2, turns_.data());
     return z;
 }
 
@@ -230,6 +265,8 @@ const V* RealFftPlan<T, V>::inverse(const V* spectrum) noexcept {
     return z;
 }
 
+template const LaneKernels<double>& lane_kernels() noexcept;
+template const LaneKernels<float>& lane_kernels() noexcept;
 template class FftPlan<double, double>;
 template class FftPlan<float, float>;
 template class FftPlan<double, Lanes<double>>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Discrete Fourier transforms of any length, in float or double, by KissFFT. KissFFT computes lengths whose prime
-// factors are at most 31; other lengths use the chirp transform (Bluestein 1970) through a power of two, so none is
-// slow.
+// Discrete Fourier transforms of any length, in float or double. Powers of two have a kernel of their own; KissFFT
+// computes other lengths whose prime factors are at most 31; the rest use the chirp transform (Bluestein 1970) through a
+// power of two, so none is slow.
 #pragma once
 
 #include "dsp/signal/spectrum/lanes.hpp"
@@ -28,7 +28,8 @@ public:
     FftPlan& operator=(const FftPlan& other);
     FftPlan& operator=(FftPlan&&) noexcept;
 
-    /// Transforms `a`, with `b` as work memory (2n values each, not overlapping); returns the one with the result.
+    /// Transforms `a`, with `b` as work memory (2n values each, not overlapping, of LineVectors); returns the one with the
+    /// result.
     V* operator()(V* a, V* b) noexcept;
 
 private:
@@ -38,6 +39,7 @@ private:
     V* through_chirp(V* a) noexcept;
 
     std::size_t n_;
+    std::vector<T> turns_;  // a power of two: for each stage and k, exp(−2πi·jk/n) with j = 1, 2, 3
     std::unique_ptr<Kiss> kiss_;
     std::unique_ptr<Chirp> chirp_;
 };
@@ -60,7 +62,7 @@ private:
     std::size_t n_;
     FftPlan<T, V> plan_;
     std::vector<T> turns_;  // exp(−2πik/n) for k ≤ n/4, even n
-    std::vector<V> a_, b_;
+    LineVector<V> a_, b_;
 };
 
 }  // namespace detail

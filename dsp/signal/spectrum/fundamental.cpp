@@ -62,10 +62,17 @@ void FundamentalStream::push(std::span<const double> samples) {
     while (!samples.empty()) {
         const std::size_t part = std::min(samples.size(), section_length_ - in_section_);
         section_.push(samples.first(part));
-        for (std::size_t i = 0; i < part; ++i) {
-            const double step = samples[i] - last_;
-            movement_[(in_section_ + i) * movement_.size() / section_length_] += step * step;
-            last_ = samples[i];
+        for (std::size_t i = 0; i < part;) {
+            const std::size_t eighth = (in_section_ + i) * movement_.size() / section_length_;
+            const std::size_t next = ((eighth + 1) * section_length_ + movement_.size() - 1) / movement_.size();
+            const std::size_t end = std::min(part, next - in_section_);
+            double sum = movement_[eighth];
+            for (; i < end; ++i) {
+                const double step = samples[i] - last_;
+                sum += step * step;
+                last_ = samples[i];
+            }
+            movement_[eighth] = sum;
         }
         samples = samples.subspan(part);
         in_section_ += part;

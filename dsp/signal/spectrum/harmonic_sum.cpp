@@ -40,15 +40,22 @@ void HarmonicSummer::find_peaks(const Spectrum& spectrum, double lowest, double 
     const std::vector<double>& p = spectrum.power;
     const double threshold = noise_peak_db(spectrum.effective_segments);
     peaks_.clear();
+    const double ratio_at_threshold = std::pow(10.0, 0.1 * threshold) * (1.0 - 1e-9);
     const double last_bin = std::min(highest / spectrum.df, static_cast<double>(p.size()) - 2.0);
     for (auto k = static_cast<std::size_t>(std::max(2.0, lowest / spectrum.df)); static_cast<double>(k) <= last_bin;
          ++k) {
         if (!(p[k] > p[k - 1] && p[k] >= p[k + 1])) continue;
         const std::size_t from = k > around ? std::max<std::size_t>(2, k - around) : 2;
         const std::span<double> bins(noise_.data(), std::min(p.size(), k + around + 1) - from);
+        // The quantile below the median: many bins around may belong to lines. Most maxima are excluded by counting
+        // the bins below the level that the quantile must not exceed.
+        const std::size_t rank = bins.size() * 3 / 10;
+        const double most = p[k] / ratio_at_threshold;
+        std::size_t below = 0;
+        for (std::size_t i = from; i < from + bins.size(); ++i) below += static_cast<std::size_t>(p[i] < most);
+        if (below <= rank) continue;
         std::copy_n(p.begin() + static_cast<std::ptrdiff_t>(from), bins.size(), bins.begin());
-        // The quantile below the median: many bins around may belong to lines.
-        const auto quantile = bins.begin() + static_cast<std::ptrdiff_t>(bins.size() * 3 / 10);
+        const auto quantile = bins.begin() + static_cast<std::ptrdiff_t>(rank);
         std::nth_element(bins.begin(), quantile, bins.end());
         // Side lobes of a window are no lines: the first is 31 dB below its line.
         const double least = 3e-4 * *std::max_element(bins.begin(), bins.end());

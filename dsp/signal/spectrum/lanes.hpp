@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
+#include <vector>
 
 namespace tactus::signal {
 
@@ -10,18 +12,33 @@ template <class T>
 struct LaneType;
 template <>
 struct LaneType<double> {
-    using type = double __attribute__((vector_size(16)));
+    using type = double __attribute__((vector_size(32)));
 };
 template <>
 struct LaneType<float> {
-    using type = float __attribute__((vector_size(16)));
+    using type = float __attribute__((vector_size(32)));
 };
 
-/// 16 bytes: available on every x86-64 and AArch64.
+/// 32 bytes: a register of AVX2, two of other machines.
 template <class T>
 using Lanes = typename LaneType<T>::type;
 
 template <class T>
 inline constexpr std::size_t lane_count = sizeof(Lanes<T>) / sizeof(T);
+
+/// Cache lines: what is compiled for AVX2 requires lanes at multiples of 32 bytes, the compiler elsewhere only of 16.
+template <class V>
+struct LineAllocator {
+    using value_type = V;
+    LineAllocator() = default;
+    template <class Other>
+    LineAllocator(const LineAllocator<Other>&) noexcept {}
+    V* allocate(std::size_t count) { return static_cast<V*>(::operator new(count * sizeof(V), std::align_val_t{64})); }
+    void deallocate(V* memory, std::size_t) noexcept { ::operator delete(memory, std::align_val_t{64}); }
+    friend bool operator==(LineAllocator, LineAllocator) { return true; }
+};
+
+template <class V>
+using LineVector = std::vector<V, LineAllocator<V>>;
 
 }  // namespace tactus::signal

@@ -12,32 +12,15 @@ namespace tactus::signal {
 
 class Level {
 public:
-    void push(std::span<const double> samples) noexcept {
-        for (const double x : samples) {
-            ++count_;
-            // Welford's recurrence: stays accurate for a small vibration on a large offset.
-            const double from_mean = x - mean_;
-            mean_ += from_mean / static_cast<double>(count_);
-            squares_ += from_mean * (x - mean_);
-            if (const double step = std::fabs(x - last_); count_ > 1 && step > 0.0)
-                quantum_ = std::fmin(quantum_, step);
-            if (count_ == 1 || x < low_) low_ = x, at_low_ = {};
-            if (count_ == 1 || x > high_) high_ = x, at_high_ = {};
-            // Coarse quantisation makes short runs at a wave's top, not much longer than on the step before.
-            const std::size_t needed = quantum_ > 1e-3 * (high_ - low_) ? 6 * dwell_ + 1 : 3;
-            at_low_.take(x == low_, needed);
-            at_high_.take(x == high_, needed);
-            dwell_ = count_ > 1 && x == last_ ? dwell_ + 1 : 1;
-            last_ = x;
-        }
-    }
+    /// The result does not depend on how a record is cut into pieces.
+    void push(std::span<const double> samples) noexcept;
 
     std::size_t count() const noexcept { return count_; }
-    double mean() const noexcept { return mean_; }
+    double mean() const noexcept { return merged().mean; }
     /// Root mean square about the mean.
-    double rms() const noexcept { return count_ ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0; }
+    double rms() const noexcept { return count_ ? std::sqrt(merged().squares / static_cast<double>(count_)) : 0.0; }
     /// Largest distance from the mean.
-    double peak() const noexcept { return count_ ? std::fmax(high_ - mean_, mean_ - low_) : 0.0; }
+    double peak() const noexcept { return count_ ? std::fmax(high_ - mean(), mean() - low_) : 0.0; }
     /// Largest distance from zero.
     double largest() const noexcept { return std::fmax(std::fabs(high_), std::fabs(low_)); }
     double crest() const noexcept { return rms() > 0.0 ? peak() / rms() : 0.0; }
@@ -56,10 +39,23 @@ private:
             else if (run > needed) ++clipped;
         }
     };
+    /// Mean of samples, and the sum of their squared distances from it.
+    struct Spread {
+        double mean = 0.0, squares = 0.0;
+    };
+    static constexpr std::size_t block = 256;  // samples
+
+    Spread merged() const noexcept;
+    void follow_limits(std::span<const double> samples) noexcept;
+    bool stays_inside(std::span<const double> samples) noexcept;
+
     std::size_t count_ = 0, dwell_ = 1;  // samples; length of the present run of equal ones
     Limit at_low_, at_high_;
     double last_ = 0.0, quantum_ = std::numeric_limits<double>::infinity();
-    double mean_ = 0.0, squares_ = 0.0, low_ = 0.0, high_ = 0.0;
+    double low_ = 0.0, high_ = 0.0;
+    Spread whole_;  // of all whole blocks
+    // Of the samples of the last block that are there: differences from its first one.
+    double first_ = 0.0, sum_ = 0.0, sum_of_squares_ = 0.0;
 };
 
 }  // namespace tactus::signal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/segment_fft.hpp"
 
+#include "dsp/signal/spectrum/fft_kernel.hpp"
+
 #include <array>
 
 namespace tactus::signal {
@@ -66,14 +68,10 @@ const Lanes<T>* SegmentFft<T>::operator()(std::span<const T* const> starts) noex
         }
         return plan_.forward();
     }
-    Lanes<T> mean{};
+    std::array<T, lanes> mean{};
     if (detrend_ == Detrend::constant)
         for (std::size_t lane = 0; lane < lanes; ++lane) mean[lane] = static_cast<T>(mean_of(x[lane], n));
-    for (std::size_t i = 0; i < n; ++i) {
-        Lanes<T> v;
-        for (std::size_t lane = 0; lane < lanes; ++lane) v[lane] = x[lane][i];
-        in[i] = (v - mean) * w[i];
-    }
+    detail::lane_kernels<T>().window(x.data(), mean.data(), w, in, n);
     return plan_.forward();
 }
 

@@ -2,6 +2,7 @@
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/signal/spectrum/fft_kernel.hpp"
 
 #include <fmt/format.h>
 
@@ -32,16 +33,10 @@ void fold(Averaging averaging, double& into, double power) noexcept {
 
 template <class T>
 void fold_segments(Averaging averaging, std::span<double> into, const Lanes<T>* spectrum, std::size_t count) noexcept {
-    constexpr std::size_t lanes = lane_count<T>;
+    if (averaging == Averaging::mean) return detail::lane_kernels<T>().add_powers(spectrum, into.data(), into.size());
     for (std::size_t k = 0; k < into.size(); ++k) {
         const Lanes<T> re = spectrum[2 * k], im = spectrum[2 * k + 1], power = re * re + im * im;
-        if (averaging == Averaging::mean) {
-            double sum = static_cast<double>(power[0]) + static_cast<double>(power[1]);
-            for (std::size_t lane = 2; lane < lanes; ++lane) sum += static_cast<double>(power[lane]);
-            into[k] += sum;
-        } else {
-            for (std::size_t lane = 0; lane < count; ++lane) fold(averaging, into[k], static_cast<double>(power[lane]));
-        }
+        for (std::size_t lane = 0; lane < count; ++lane) fold(averaging, into[k], static_cast<double>(power[lane]));
     }
 }
 

@@ -98,19 +98,23 @@ TEST_CASE("a transform of one tone is one line at 0 Hz, between, and at half the
     }
 }
 
-TEST_CASE("segments side by side get the bits that each gets alone") {
-    constexpr std::size_t n = 300;
-    signal::detail::RealFftPlan<float, signal::Lanes<float>> together(n);
-    signal::detail::RealFftPlan<float, float> alone(n);
-    const auto x = noise<float>(4 * n);
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t lane = 0; lane < 4; ++lane) together.input()[i][lane] = x[lane * n + i].real();
-    const signal::Lanes<float>* all = together.forward();
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-        for (std::size_t i = 0; i < n; ++i) alone.input()[i] = x[lane * n + i].real();
-        const float* one = alone.forward();
-        bool equal = true;
-        for (std::size_t i = 0; i < n + 2; ++i) equal = equal && one[i] == all[i][lane];
-        CHECK(equal);
+TEMPLATE_TEST_CASE("segments side by side get the bits that each gets alone", "", float, double) {
+    constexpr std::size_t lanes = signal::lane_count<TestType>;
+    // KissFFT, the kernel of even and odd powers of two, and the chirp.
+    for (const std::size_t n : {300u, 512u, 1024u, 4096u, 74u}) {
+        CAPTURE(n);
+        signal::detail::RealFftPlan<TestType, signal::Lanes<TestType>> together(n);
+        signal::detail::RealFftPlan<TestType, TestType> alone(n);
+        const auto x = noise<TestType>(lanes * n);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t lane = 0; lane < lanes; ++lane) together.input()[i][lane] = x[lane * n + i].real();
+        const signal::Lanes<TestType>* all = together.forward();
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            for (std::size_t i = 0; i < n; ++i) alone.input()[i] = x[lane * n + i].real();
+            const TestType* one = alone.forward();
+            bool equal = true;
+            for (std::size_t i = 0; i < n + 2; ++i) equal = equal && one[i] == all[i][lane];
+            CHECK(equal);
+        }
     }
 }

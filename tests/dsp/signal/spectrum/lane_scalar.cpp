@@ -67,8 +67,8 @@ TEST_CASE("each lane of a transform has the bits of KissFFT on its numbers alone
 }
 
 TEST_CASE("a lane scalar is made from one number, keeps its zero's sign, and computes lane by lane") {
-    const signal::LaneScalar<double> zero(-0.0), a(signal::Lanes<double>{1.5, -2.0}),
-        b(signal::Lanes<double>{4.0, 0.5});
+    const signal::LaneScalar<double> zero(-0.0), a(signal::Lanes<double>{1.5, -2.0, 1.5, -2.0}),
+        b(signal::Lanes<double>{4.0, 0.5, 4.0, 0.5});
     CHECK(std::signbit(zero.lanes[0]));
     CHECK(std::signbit(zero.lanes[1]));
     const signal::LaneScalar<double> sum = a + b, difference = a - b, product = a * b, ratio = a / b, twice = 2 * a,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/level.hpp"
+
+#include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -42,4 +44,35 @@ TEST_CASE("a large offset does not blur the level of a small vibration") {
     level.push(x);
     CHECK(level.mean() == Approx(1e6));
     CHECK(level.rms() == Approx(1e-3 / std::numbers::sqrt2).epsilon(1e-5));
+}
+
+TEST_CASE("a level does not depend on the pieces that a record comes in, nor on where it stands between its limits") {
+    // Runs at the limits and at other values, steps of a converter, and long quiet parts in which blocks are skipped.
+    const Random random{9};
+    std::vector<double> x;
+    for (std::size_t i = 0; x.size() < 20000; ++i) {
+        const double value = std::round(100.0 * random.normal(i)) / 64.0;
+        const bool is_loud = i % 700 < 60;
+        x.insert(x.end(), 1 + i % 5, std::clamp(is_loud ? 3.0 * value : 0.1 * value, -2.0, 2.0));
+        if (i % 1000 == 999) x.insert(x.end(), 300, 0.015625);
+    }
+    signal::Level whole;
+    whole.push(x);
+    CHECK(whole.clipped() > 100);
+    double mean = 0.0, squares = 0.0;
+    for (const double v : x) mean += v / static_cast<double>(x.size());
+    for (const double v : x) squares += (v - mean) * (v - mean);
+    CHECK(whole.mean() == Approx(mean).epsilon(1e-10).margin(1e-14));
+    CHECK(whole.rms() == Approx(std::sqrt(squares / static_cast<double>(x.size()))).epsilon(1e-12));
+    for (const std::size_t piece : {1u, 3u, 64u, 1000u}) {
+        CAPTURE(piece);
+        signal::Level level;
+        for (std::size_t i = 0; i < x.size(); i += piece)
+            level.push(std::span(x).subspan(i, std::min(piece, x.size() - i)));
+        CHECK(level.clipped() == whole.clipped());
+        CHECK(level.rms() == whole.rms());
+        CHECK(level.mean() == whole.mean());
+        CHECK(level.peak() == whole.peak());
+        CHECK(level.largest() == 2.0);
+    }
 }
