@@ -78,11 +78,11 @@ std::vector<double> select(const std::vector<std::size_t>& ranks, const Pass& pa
     return found;
 }
 
-/// The step of the clock itself: the largest length of which all steps are whole multiples. 0 if there is none above a
-/// thousandth of the mean step, or if nothing shows it.
+/// The step of the clock itself: the largest length of which all steps are whole multiples. 0 if there is none above
+/// 1e-5 of the mean step, or if nothing shows it.
 double clock_step(const TimedSamples& samples, double first, double last) {
     TimeBlocks times(samples);
-    const double least = 1e-3 * (last - first) / static_cast<double>(samples.count - 1);
+    const double least = 1e-5 * (last - first) / static_cast<double>(samples.count - 1);
     // Times are rounded to the digits of a double.
     const double error = std::max(1e-4 * least, 8e-16 * std::max(std::abs(first), std::abs(last)));
     double common = 0.0, before = first;
@@ -111,13 +111,12 @@ struct TimeLine {
 };
 
 /// Times of an even sampling that a coarse clock rounded to its own steps: a line explains them within one step. Returns
-/// those lines, piece by piece between gaps; none if the steps themselves are uneven, or if the clock is so
-/// fine that its rounding does not matter.
+/// those lines, piece by piece between gaps; none if the steps themselves are uneven, or without such a clock.
 std::optional<std::vector<TimeLine>> without_rounding(const TimedSamples& samples, double step, double first_time,
                                                       double last_time) {
     const std::size_t size = samples.count;
     const double mean = (last_time - first_time) / static_cast<double>(size - 1);
-    if (step < 0.01 * mean) return std::nullopt;
+    if (!(step > 0.0)) return std::nullopt;
     std::map<long, std::size_t> counts;  // steps by their length in steps of the clock
     std::array<std::size_t, 64> short_counts{};
     std::size_t positive = 0;
@@ -233,34 +232,45 @@ private:
 /// Band-limited interpolation between even values: sinc with a Kaiser window of 16 zero crossings to each side.
 class Interpolation {
 public:
+    static constexpr std::size_t reach = 16, width = 2 * reach;
+    using Weights = std::array<double, width>;
+
     Interpolation() {
         const auto bessel = [](double x) {
             double sum = 1.0, term = 1.0;
             for (int k = 1; k < 40; ++k) term *= 0.25 * x * x / (k * k), sum += term;
             return sum;
         };
-        for (std::size_t i = 0; i < table_.size(); ++i) {
+        const auto value_at = [&](std::size_t i) {
             const double u = static_cast<double>(i) / per_step, share = u / reach, angle = std::numbers::pi * u;
             const double window = share < 1.0 ? bessel(7.0 * std::sqrt(1.0 - share * share)) / bessel(7.0) : 0.0;
-            table_[i] = window * (i == 0 ? 1.0 : std::sin(angle) / angle);
-        }
+            return window * (i == 0 ? 1.0 : std::sin(angle) / angle);
+        };
+        for (std::size_t phase = 0; phase <= per_step; ++phase)
+            for (std::size_t k = 0; k < reach; ++k) table_[phase][k] = value_at(phase + k * per_step);
     }
-    /// Calls use(index, weight) for the values around `place`.
-    template <class Use>
-    void at(double place, std::size_t size, const Use& use) const {
-        const double from = std::max(0.0, std::ceil(place - reach + 1e-9));
-        const double to = std::min(static_cast<double>(size) - 1.0, std::floor(place + reach - 1e-9));
-        for (double n = from; n <= to; ++n) {
-            const double u = std::abs(place - n) * per_step;
-            const auto i = static_cast<std::size_t>(u);
-            const double share = u - static_cast<double>(i);
-            use(static_cast<std::size_t>(n), (1.0 - share) * table_[i] + share * table_[i + 1]);
-        }
+
+    /// Weights of the values from the returned index on, for a place at least `reach` from both ends.
+    std::size_t weights_at(double place, Weights& weights) const {
+        const double before = std::floor(place);
+        // The values on one side have the same distances but for whole steps.
+        const auto side = [&](double distance, std::array<double, reach>& out) {
+            const double u = distance * per_step;
+            const auto phase = std::min(static_cast<std::size_t>(u), per_step - 1);
+            const double share = u - static_cast<double>(phase);
+            const std::array<double, reach>&low = table_[phase], &high = table_[phase + 1];
+            for (std::size_t k = 0; k < reach; ++k) out[k] = (1.0 - share) * low[k] + share * high[k];
+        };
+        std::array<double, reach> left, right;
+        side(place - before, left);
+        side(before + 1.0 - place, right);
+        for (std::size_t k = 0; k < reach; ++k) weights[reach - 1 - k] = left[k], weights[reach + k] = right[k];
+        return static_cast<std::size_t>(before) + 1 - reach;
     }
 
 private:
-    static constexpr double reach = 16.0, per_step = 512.0;
-    std::vector<double> table_ = std::vector<double>(static_cast<std::size_t>(reach * per_step) + 2);
+    static constexpr std::size_t per_step = 512;
+    std::vector<std::array<double, reach>> table_ = std::vector<std::array<double, reach>>(per_step + 1);
 };
 
 /// Makes even values fit the uneven samples better than a spline does near half the rate: three steps of conjugate
@@ -268,15 +278,28 @@ private:
 void fit_samples(std::span<const double> places, std::span<const double> values, std::vector<double>& even) {
     static const Interpolation interpolation;
     const std::size_t size = even.size();
-    const auto residual_of = [&](const std::vector<double>& x, std::size_t i) {
-        double sum = 0.0;
-        interpolation.at(places[i], size, [&](std::size_t n, double weight) { sum += weight * x[n]; });
-        return sum;
+    // Near the ends the kernel lacks values on one side.
+    const auto is_inside = [&](double place) { return place >= 16.0 && place <= static_cast<double>(size) - 17.0; };
+    const auto values_at = [&](const std::vector<double>& x, std::vector<double>& out) {
+        Interpolation::Weights weights;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            out[i] = 0.0;
+            if (!is_inside(places[i])) continue;
+            const double* const from = x.data() + interpolation.weights_at(places[i], weights);
+            std::array<double, 4> sums{};
+            for (std::size_t k = 0; k < weights.size(); k += 4)
+                for (std::size_t lane = 0; lane < 4; ++lane) sums[lane] += weights[k + lane] * from[k + lane];
+            out[i] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        }
     };
     const auto back = [&](const std::vector<double>& rest) {
         std::vector<double> out(size);
-        for (std::size_t i = 0; i < rest.size(); ++i)
-            interpolation.at(places[i], size, [&](std::size_t n, double weight) { out[n] += weight * rest[i]; });
+        Interpolation::Weights weights;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            if (rest[i] == 0.0) continue;
+            double* const to = out.data() + interpolation.weights_at(places[i], weights);
+            for (std::size_t k = 0; k < weights.size(); ++k) to[k] += weights[k] * rest[i];
+        }
         return out;
     };
     const auto square = [](const std::vector<double>& x) {
@@ -284,15 +307,13 @@ void fit_samples(std::span<const double> places, std::span<const double> values,
         for (const double v : x) sum += v * v;
         return sum;
     };
-    // Near the ends the kernel lacks values on one side.
     std::vector<double> rest(places.size()), moved(places.size());
-    const auto is_inside = [&](double place) { return place >= 16.0 && place <= static_cast<double>(size) - 17.0; };
-    for (std::size_t i = 0; i < places.size(); ++i)
-        rest[i] = is_inside(places[i]) ? values[i] - residual_of(even, i) : 0.0;
+    values_at(even, moved);
+    for (std::size_t i = 0; i < places.size(); ++i) rest[i] = is_inside(places[i]) ? values[i] - moved[i] : 0.0;
     std::vector<double> slope = back(rest), step = slope;
     double steep = square(slope);
     for (int round = 0; round < 3 && steep > 0.0; ++round) {
-        for (std::size_t i = 0; i < places.size(); ++i) moved[i] = is_inside(places[i]) ? residual_of(step, i) : 0.0;
+        values_at(step, moved);
         const double length = square(moved);
         if (!(length > 0.0)) return;
         const double share = steep / length;
@@ -388,7 +409,7 @@ void Regulariser::State::examine() {
             "the clock counts in steps of {:.3g} s, and {:.0f} of them are too few for the rate of {} samples; "
             "state the rate (--sample-rate)",
             clock, steps, size));
-    if (lines) facts.clock_step = clock;
+    if (lines && clock >= 0.01 * mean) facts.clock_step = clock;
     const auto for_each_step = [&](const auto& use) {
         UsedTimes used(samples, used_lines());
         double before = used.next();

@@ -116,6 +116,32 @@ TEST_CASE("times that a coarse clock rounded are even, in every ratio of rate an
         }
 }
 
+TEST_CASE("times that were rounded to some decimals are even: the samples are taken as they are") {
+    for (const double rate : {3200.0, 3000.0, 6666.0, 441.0}) {
+        // From 3 % of a step to 0.02 %.
+        for (const double clock : {1e-5, 1e-6, 1e-7}) {
+            CAPTURE(rate, clock);
+            std::vector<double> times, values;
+            for (int i = 0; i < 3000; ++i) {
+                times.push_back(clock * std::round(i / rate / clock));
+                values.push_back(i % 2 == 0 ? 1.0 : -1.0);
+            }
+            const signal::EvenRecord even = signal::regularise(times, Channels{values});
+            CHECK(even.rate == Approx(rate).epsilon(1e-5));
+            REQUIRE(even.pieces.size() == 1);
+            CHECK(even.pieces[0][0] == values);
+        }
+    }
+    // Samples that jitter by more than the clock's step are interpolated.
+    const Random random{4};
+    std::vector<double> times, values;
+    for (std::size_t i = 0; i < 3000; ++i) {
+        times.push_back(1e-6 * std::round(1e6 * (static_cast<double>(i) + 0.02 * random.uniform(i)) / 3200.0));
+        values.push_back(wave(times.back()));
+    }
+    CHECK(signal::regularise(times, Channels{values}).pieces[0][0] != values);
+}
+
 TEST_CASE("a clock that counts few steps in a record is refused, because the rate would be wrong") {
     const auto at_kilohertz = [](int count) {
         std::vector<double> times, values;
