@@ -4,6 +4,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
+#include "assets/volume/file_hash.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -275,7 +276,7 @@ void add_fragment(CasePlan& plan, const std::string& name, const std::filesystem
         throw Error(fmt::format("{}: the plan has a fragment '{}' already; choose another name, as in NAME={}",
                                 file.string(), name, file.string()));
     Hash hash;
-    file::add_file(hash, bone::file_of_bone(file));
+    volume::add_file_with_samples(hash, bone::file_of_bone(file));
     std::error_code failure;
     const auto absolute = std::filesystem::weakly_canonical(file, failure),
                home = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, failure);
@@ -315,7 +316,7 @@ std::vector<std::string> changed_files(const CasePlan& plan, const std::filesyst
     visit_files(plan, [&](const std::string& what, const std::string& file, std::uint64_t hash) {
         Hash now;
         try {
-            file::add_file(now, bone::file_of_bone(file_of(file, folder)));
+            volume::add_file_with_samples(now, bone::file_of_bone(file_of(file, folder)));
         } catch (const Error&) {
             problems.push_back(fmt::format("{}: its file {} is missing", what, file_of(file, folder).string()));
             return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
 #include "assets/training/task_file.hpp"
+#include "assets/volume/file_hash.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/volume/iso_distance.hpp"
@@ -62,7 +63,7 @@ Task load_task(const std::filesystem::path& path) {
             const volume::Grid labels = volume::lps_grid(volume::read_volume(spare.file));
             task.spared.push_back({spare.name, spare.margin, distance_of(labels, spare.label, spare.file.string())});
             // A folder of images is hashed by the samples that were read from it.
-            if (std::filesystem::is_regular_file(spare.file)) file::add_file(hash, spare.file);
+            if (std::filesystem::is_regular_file(spare.file)) volume::add_file_with_samples(hash, spare.file);
             else hash.add_bytes(labels.values.data(), labels.values.size() * sizeof(float));
         } catch (const Error& error) {
             throw Error({path.string(), spare.line, 1}, fmt::format("structure '{}': {}", spare.name, error.what()));

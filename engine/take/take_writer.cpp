@@ -4,17 +4,22 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/part.hpp"
+#include "assets/file/toml_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/volume/file_hash.hpp"
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "graph/plugin/plugins.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <bit>
 #include <fstream>
+#include <set>
+#include <vector>
 
 namespace tactus::take {
 
@@ -64,25 +69,44 @@ Json sample_json(const DeviceSample& s) {
     return json;
 }
 
+void add_strings(const toml::node& node, std::vector<std::string>& all) {
+    if (const auto* text = node.as_string()) all.push_back(text->get());
+    if (const auto* table = node.as_table())
+        for (const auto& [key, value] : *table) add_strings(value, all);
+    if (const auto* list = node.as_array())
+        for (const toml::node& value : *list) add_strings(value, all);
+}
+
+/// The files that a TOML file names, as recordings, bones and label maps; ascending. Patches are left out: a take holds
+/// its own.
+std::vector<fs::path> files_named_in(const fs::path& path) {
+    std::vector<std::string> texts;
+    try {
+        add_strings(*file::parse_toml(file::read_whole_file(path), path.string()), texts);
+    } catch (const Error&) {
+        return {};  // reported when it is loaded
+    }
+    std::set<fs::path> found;
+    for (const std::string& text : texts) {
+        if (text.empty() || text.find('\0') != std::string::npos) continue;
+        const fs::path file = (path.parent_path() / bone::file_of_bone(text)).lexically_normal();
+        std::error_code ignored;
+        if (file.extension() != ".toml" && fs::is_regular_file(file, ignored)) found.insert(file);
+    }
+    return {found.begin(), found.end()};
+}
+
 }  // namespace
 
 std::uint64_t hash_of_asset(const fs::path& path) {
     Hash hash;
-    if (path.extension() != ".toml") {
-        file::add_file(hash, bone::file_of_bone(path));
-        return hash.value();
-    }
-    const std::string text = file::read_whole_file(path);
-    hash.add_bytes(text.data(), text.size());
-    // A recording set is a text that names its sounds.
-    std::vector<fs::path> beside;
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(path.parent_path().empty() ? "." : path.parent_path(), ignored))
-        if (entry.is_regular_file() && entry.path() != path && text.find(entry.path().filename()) != std::string::npos)
-            beside.push_back(entry.path());
-    std::ranges::sort(beside);
-    for (const fs::path& other : beside)
-        if (other.extension() != ".toml") hash.add_word(hash_of_asset(other));
+    volume::add_file_with_samples(hash, bone::file_of_bone(path));
+    if (path.extension() == ".toml")
+        for (const fs::path& file : files_named_in(path)) {
+            Hash own;
+            volume::add_file_with_samples(own, file);
+            hash.add_word(own.value());
+        }
     return hash.value();
 }
 
