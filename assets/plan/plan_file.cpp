@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace tactus::plan {
@@ -79,25 +80,43 @@ bool is_plain(const std::string& text) {
     return std::ranges::none_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
 }
 
+/// The objects of a file that were read, and which members of each.
+struct ReadObjects {
+    struct Object {
+        std::string place;
+        std::vector<std::string> names;
+    };
+
+    const std::string& file;
+    std::map<const Json*, Object> all;
+
+    /// Throws Error for a member that was not asked for: the next change of the plan would lose it.
+    void refuse_others() const {
+        for (const auto& [json, object] : all) file::refuse_unknown(*json, object.place, object.names);
+    }
+};
+
 /// A JSON object with its position in the file, such as "steps[3].poses[0]", for messages.
 class Item {
 public:
-    Item(const Json& json, std::string where, const std::string& file)
-        : json_(json), where_(std::move(where)), file_(file) {
+    Item(const Json& json, std::string where, ReadObjects& read)
+        : json_(json), where_(std::move(where)), read_(read), names_(read.all[&json].names) {
+        read_.all[&json].place = place();
         if (!json.is_object()) fail("is not an object");
     }
 
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(fmt::format("{}: {} {}", file_, where_.empty() ? "the plan" : where_, what));
+    [[noreturn]] void fail(const std::string& what) const { throw Error(fmt::format("{} {}", place(), what)); }
+    bool has(const char* key) const {
+        if (std::ranges::find(names_, key) == names_.end()) names_.emplace_back(key);
+        return json_.contains(key);
     }
-    bool has(const char* key) const { return json_.contains(key); }
     const Json& json() const { return json_; }
-    std::string place() const { return fmt::format("{}: {}", file_, where_); }
+    std::string place() const { return fmt::format("{}: {}", read_.file, where_.empty() ? "the plan" : where_); }
     /// The place of a member, for messages.
-    std::string place(const char* key) const { return fmt::format("{}: {}", file_, inside(key)); }
+    std::string place(const char* key) const { return fmt::format("{}: {}", read_.file, inside(key)); }
     const Json& at(const char* key) const {
+        if (!has(key)) fail(fmt::format("has no '{}'", key));
         const auto found = json_.find(key);
-        if (!found) fail(fmt::format("has no '{}'", key));
         return *found;
     }
     std::string text(const char* key) const {
@@ -146,9 +165,9 @@ public:
             fail(fmt::format("has a '{}' that is not a hash", key));
         return std::stoull(digits, nullptr, 16);
     }
-    Item item(const char* key) const { return {at(key), inside(key), file_}; }
+    Item item(const char* key) const { return {at(key), inside(key), read_}; }
     Item item(const char* key, const Json& value, std::size_t n) const {
-        return {value, fmt::format("{}[{}]", inside(key), n), file_};
+        return {value, fmt::format("{}[{}]", inside(key), n), read_};
     }
     Pose pose() const {
         const auto q = numbers("quaternion_wxyz", 4);
@@ -162,7 +181,8 @@ private:
 
     const Json& json_;
     std::string where_;
-    const std::string& file_;
+    ReadObjects& read_;
+    std::vector<std::string>& names_;
 };
 
 PlanFit read_fit(const Item& item) {
@@ -308,20 +328,23 @@ std::string plan_text(const CasePlan& plan) {
 
 CasePlan read_plan_text(std::string_view text, const std::string& file) {
     const Json json = parsed(text, file);
-    const Item top(json, "", file);
+    ReadObjects read{file, {}};
+    const Item top(json, "", read);
     if (!top.has("format") || json["format"] != format_name)
         throw Error(fmt::format("{}: is not a plan; a plan has \"format\": \"{}\"", file, format_name));
     if (const Json& version = top.at("version"); version != plan_file_version)
         throw Error(fmt::format("{}: the plan has version {}, but this program reads version {}; nothing was changed",
                                 file, version.dump(), plan_file_version));
+    top.has("pose");  // for readers of the file: how a pose is to be understood
     if (top.text("frame") != "LPS" || top.text("unit") != "m") top.fail("must have frame \"LPS\" and unit \"m\"");
     CasePlan plan;
     plan.title = top.text("title");
     read_fragments(plan, top);
     std::size_t n = 0;
     for (const Json& step : top.list("steps")) plan.steps.push_back(read_step(plan, top.item("steps", step, n++)));
-    check_steps(plan, top);
     read_alternatives(plan, top);
+    read.refuse_others();
+    check_steps(plan, top);
     return plan;
 }
 

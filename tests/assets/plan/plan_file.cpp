@@ -219,6 +219,28 @@ TEST_CASE("what is no plan of ours is refused in one line that says what to do")
     CHECK_THAT(refusal("solid ascii"), Catch::Matchers::ContainsSubstring("JSON"));
 }
 
+TEST_CASE("a key that a plan does not have is refused in each of its objects, with a similar name and its line") {
+    const auto refusal = [](const std::string& text) {
+        try {
+            plan::read_plan_text(text, "p");
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string text = plan::plan_text(eventful());
+    int objects = 0;
+    for (auto at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1), ++objects) {
+        std::string other = text;
+        other.insert(at + 1, "\"colr\": 1,");
+        CAPTURE(text.substr(at, 80));
+        CHECK_THAT(refusal(other), Catch::Matchers::ContainsSubstring("has the unknown key 'colr'"));
+    }
+    CHECK(objects > 20);
+    CHECK(refusal(replaced(text, "\"colour\": [", "\"colr\": 1,\n  \"colour\": [")) ==
+          "p: fragments[0] has the unknown key 'colr' in line 13; did you mean 'colour'?");
+}
+
 TEST_CASE("a plan is saved whole or not at all") {
     const TemporaryFolder folder;
     const auto file = folder / "case.plan.json";
@@ -250,6 +272,16 @@ TEST_CASE("a file that is gone or has changed since is named, and names of fragm
                Catch::Matchers::ContainsSubstring("has changed since the plan was made"));
     std::filesystem::remove(file);
     CHECK_THAT(plan::changed_files(plan, file.parent_path())[0], Catch::Matchers::ContainsSubstring("is missing"));
+
+    // The samples of a scan may be in a file of their own.
+    plan::CasePlan scanned;
+    file::write_whole_file(folder / "scan.nhdr",
+                           "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: scan.raw\n");
+    file::write_whole_file(folder / "scan.raw", "01234567");
+    plan::add_fragment(scanned, "scan", folder / "scan.nhdr", file.parent_path(), Vec3(1.0));
+    CHECK(plan::changed_files(scanned, file.parent_path()).empty());
+    file::write_whole_file(folder / "scan.raw", "01234568");
+    CHECK(plan::changed_files(scanned, file.parent_path()).size() == 1);
 }
 
 namespace {
