@@ -310,6 +310,12 @@ TEST_CASE("dsp: the multigrid cycle is linear and symmetric and positive") {
     CHECK(dot(u, mu) > 0.0);
     CHECK(dot(v, mv) > 0.0);
     CHECK(std::abs(dot(v, mu) - dot(u, mv)) < 1e-4 * scale);
+    std::vector<float> sum(u.size());
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] = 2.0f * u[n] - v[n];
+    std::vector<float> rest = applied(sum);
+    const double size = std::sqrt(dot(rest, rest));
+    for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= 2.0f * mu[n] - mv[n];
+    CHECK(std::sqrt(dot(rest, rest)) < 1e-5 * size);
 }
 
 TEST_CASE("dsp: seeds in the dark do not keep the solver busy and the residual says what was reached") {

@@ -47,15 +47,19 @@ TEST_CASE("half the thrust is half the heat, no thrust and a saw that stands are
     cut(full, 8.0);
     cut(half, 4.0);
     cut(none, 0.0);
-    off.feed<Pose>("pose", advancing);
-    off.feed<double>("load", [](std::int64_t) { return 8.0; });
-    off.feed<bool>("running", false);
-    off.disconnect("strokes").disconnect("irrigated").disconnect("feed");
-    off.prepare();
-    off.run(600);
+    NodeHarness on("kerf_heat", slow);
+    for (NodeHarness* const node : {&off, &on}) {
+        node->feed<Pose>("pose", advancing);
+        node->feed<double>("load", [](std::int64_t) { return 8.0; });
+        node->feed<bool>("running", node == &on);
+        for (const char* port : {"strokes", "irrigated", "feed", "cutting", "teeth"}) node->disconnect(port);
+        node->prepare();
+        node->run(600);
+    }
     CHECK(half.last<double>("peak") == Approx(0.5 * full.last<double>("peak")).epsilon(1e-3));
     CHECK(none.last<double>("peak") == 0.0);
     CHECK(off.last<double>("peak") == 0.0);
+    CHECK(on.last<double>("peak") == full.last<double>("peak"));
 }
 
 TEST_CASE("a second cut elsewhere is in cool bone, and the hottest of both counts") {
