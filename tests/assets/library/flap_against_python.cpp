@@ -227,14 +227,9 @@ Json measured(const FlapMeasures& m) {
             {"warnings", warnings}};
 }
 
-}  // namespace
-
-TEST_CASE("random flaps of the synthetic case have the measures and warnings that brute force in Python gives",
-          "[slow]") {
+void check_random_flaps(int count) {
     if (std::system("/usr/bin/python3 -c 'import numpy, scipy' 2>/dev/null") != 0)
         return tactus::test::skip("no python3 with numpy and scipy here");
-    const char* const wanted = std::getenv("TACTUS_FLAP_PLANS");
-    const int count = wanted ? std::atoi(wanted) : 20;
     const library::FlapCase made = library::make_flap();
     FibulaInputs nominal = made.inputs;
     nominal.donor = made.fibula;
@@ -283,4 +278,18 @@ TEST_CASE("random flaps of the synthetic case have the measures and warnings tha
     const std::string script = (tactus::test::source_folder() / "tests/assets/library/check_flaps.py").string();
     CHECK(std::system(fmt::format("/usr/bin/python3 '{}' '{}'", script, path.string()).c_str()) == 0);
     std::filesystem::remove(path);
+}
+
+}  // namespace
+
+// Costly: brute force in Python over every triangle.
+TEST_CASE("random flaps of the synthetic case have the measures and warnings that brute force in Python gives",
+          "[slow]") {
+    check_random_flaps(5);
+}
+
+TEST_CASE("twenty random flaps, or TACTUS_FLAP_PLANS, have the measures and warnings of brute force in Python",
+          "[long]") {
+    const char* const wanted = std::getenv("TACTUS_FLAP_PLANS");
+    check_random_flaps(wanted ? std::atoi(wanted) : 20);
 }
