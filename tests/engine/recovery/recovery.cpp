@@ -32,6 +32,12 @@ ShakenCounts shake(std::uint64_t first, std::uint64_t past, double seconds) {
 TEST_CASE("a hand that everything happens to keeps its limits and its faults and its energy") { shake(1, 11, 60.0); }
 
 TEST_CASE("many hands that everything happens to keep their limits and faults and energy", "[slow]") {
+    const ShakenCounts all = shake(100, 130, 120.0);
+    CHECK(all.waits_for_person > 2);
+    CHECK(all.presses > 2);
+}
+
+TEST_CASE("a hundred hands that everything happens to keep their limits and faults and energy", "[long]") {
     const ShakenCounts all = shake(100, 200, 120.0);
     CHECK(all.waits_for_person > 10);
     CHECK(all.presses > 10);
