@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 namespace tactus::signal {
 
@@ -128,10 +129,11 @@ struct FftPlan<T, V>::Chirp {
 
 template <class T, class V>
 FftPlan<T, V>::FftPlan(std::size_t n) : n_(n) {
-    if (n >= 4 && std::has_single_bit(n)) {
-        turns_ = fft_turns<T>(n);
-        return;
-    }
+    if constexpr (!std::is_same_v<T, V>)
+        if (n >= 4 && std::has_single_bit(n)) {
+            turns_ = fft_turns<T>(n);
+            return;
+        }
     if (is_smooth(n)) {
         kiss_ = std::make_unique<Kiss>(n);
         return;
@@ -171,8 +173,9 @@ FftPlan<T, V>& FftPlan<T, V>::operator=(FftPlan&&) noexcept = default;
 template <class T, class V>
 V* FftPlan<T, V>::operator()(V* a, V* b) noexcept {
     if (chirp_) return through_chirp(a);
-    if (kiss_) (*kiss_)(a, b);
-    else Kernels<T, V>::transform(a, b, n_, turns_.data());
+    if constexpr (!std::is_same_v<T, V>)
+        if (!kiss_) return Kernels<T, V>::transform(a, b, n_, turns_.data()), b;
+    (*kiss_)(a, b);
     return b;
 }
 
