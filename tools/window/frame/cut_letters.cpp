@@ -43,7 +43,10 @@ Scrolls scrolls_of(const ImGuiWindow* panel) {
     for (; panel; panel = panel->Flags & ImGuiWindowFlags_ChildWindow ? panel->ParentWindow : nullptr) {
         // ImGui counts what lies beyond a border also where nothing can scroll to it.
         scrolls.across |= panel->ScrollMax.x > 0.0f && (panel->Flags & ImGuiWindowFlags_HorizontalScrollbar) != 0;
-        scrolls.down |= panel->ScrollMax.y > 0.0f && (panel->Flags & ImGuiWindowFlags_NoScrollWithMouse) == 0;
+        // A list that has just become longer scrolls from the next frame on.
+        const bool is_longer = panel->DC.CursorMaxPos.y > panel->InnerRect.Max.y;
+        scrolls.down |=
+            (panel->ScrollMax.y > 0.0f || is_longer) && (panel->Flags & ImGuiWindowFlags_NoScrollWithMouse) == 0;
     }
     return scrolls;
 }
