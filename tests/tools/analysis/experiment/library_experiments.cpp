@@ -62,6 +62,7 @@ TEST_CASE("a fragment that misses its place is drawn there, and is left where it
 }
 
 TEST_CASE("a simulated subject saws to the planned depth, and worse where the model says so", "[long]") {
+    std::map<std::string, double> deviation;
     for (const experiment::TrialRecord& trial : trials_of_library("saw", 1)) {
         CAPTURE(trial.condition);
         CHECK(trial.marked.empty());
@@ -71,7 +72,12 @@ TEST_CASE("a simulated subject saws to the planned depth, and worse where the mo
         CHECK(trial.measures.at("overshoot") < 2.0 * mm);
         CHECK(trial.measures.at("deviation") < 1.5 * mm);
         CHECK(trial.measures.at("thrust") > 1.0);
+        deviation[trial.condition] = trial.measures.at("deviation");
     }
+    // The model's error is 1.6 times as large without vibration.
+    CAPTURE(deviation);
+    REQUIRE(deviation.size() == 2);
+    CHECK(deviation["still"] > 1.2 * deviation["vibration"]);
 }
 
 TEST_CASE("the gripper gives the stiffness that its experiment asks for, in both intervals") {

@@ -85,7 +85,7 @@ TEST_CASE("who comes back to the window with a key held presses it anew", "[disp
                                [](Person& person) { person.give_keyboard("Tactus"); });
 }
 
-TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display][live]") {
+TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
     folder.write("script", R"(size 800 600
@@ -126,6 +126,7 @@ TEST_CASE("'try' runs the saw in a window with the mouse as hand", "[display][sl
     const json summary = json::parse(slurp(folder.path / "tried/summary.json"));
     CHECK(summary["patch"] == "Saw training");
     CHECK(summary["force"]["felt_mean_N"] == 0.0);  // the hand rests, and nobody feels the force of a mouse
+    CHECK(summary["force"]["energy_cap"] == "not needed");  // nor has it motors, unlike the hand of the patch
 }
 
 TEST_CASE("a mouse needs a window", "[display]") {

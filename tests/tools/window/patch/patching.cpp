@@ -220,8 +220,14 @@ TEST_CASE("a wire led to another source keeps how it is delivered and where it i
     std::string text = voice;
     text.replace(text.find("loud.factor"), 11, "loud.factor as linear");
     Workbench bench(patching_choice(folder, text + "[nodes.other]\ntype = \"constant\"\nrate = \"60 Hz\"\n"));
+    const auto line_of = [&](const std::string& part) {
+        const std::string now = bench.editor().text();
+        return std::count(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(now.find(part)), '\n');
+    };
+    const auto line = line_of("loud.factor as linear");
     REQUIRE(bench.reconnect_source("level.value", "other.value", "loud.factor"));
     CHECK(has(bench, "other.value -> loud.factor as linear"));
+    CHECK(line_of("loud.factor as linear") == line);
     CHECK_FALSE(has(bench, "level.value -> "));
     CHECK(undone(bench) == 1);
     CHECK_FALSE(bench.reconnect_source("level.value", "tone.signal", "loud.factor"));
