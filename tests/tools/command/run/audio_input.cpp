@@ -159,6 +159,8 @@ bool echoes_every_frame(const Folder& folder, const std::string& file, int perio
     CHECK(counter.echoes(0) > 48'000);
     CHECK(counter.delays(0).size() == 1);
     CHECK(counter.delays(0) == counter.delays(1));
+    // A server that missed its own deadlines has shifted its time.
+    if (sound["heard"]["card_xruns"] > 0) return false;
     // Each way the margin and a callback, and a call of the group, as 'check' says; to one callback. The sound begins
     // later when the thread is late, and the callbacks' times are those of a server that was late itself.
     const double late = 48e-3 * summary["groups"][0]["lateness_us"]["max"].get<double>();
