@@ -27,13 +27,15 @@ std::map<std::string, Spot> Eyes::spots() const {
 }
 
 Spot Eyes::spot(const std::string& name) const {
-    for (int i = 0; i < 300; ++i) {
+    Spot found{};
+    const bool is_there = sees([&] {
         const auto all = spots();
-        if (const auto found = all.find(name); found != all.end()) return found->second;
-        Person::wait(0.1);
-    }
-    FAIL("no control '" << name << "'");
-    return {};
+        const auto at = all.find(name);
+        if (at != all.end()) found = at->second;
+        return at != all.end();
+    });
+    if (!is_there) FAIL("no control '" << name << "'");
+    return found;
 }
 
 fs::file_time_type Eyes::written() const {

@@ -52,10 +52,10 @@ void keep(const Person& person, const std::string& name);
 /// Sends a signal to the command that works in the folder; SIGINT ends it as Ctrl-C does.
 void interrupt(const std::filesystem::path& folder, int signal = SIGINT);
 
-/// Waits until something is to be seen, for half a minute at most.
+/// Waits until something is to be seen, for two minutes at most: on a busy machine a window may be that late.
 template <class Condition>
 bool sees(Condition&& is_there) {
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 1200; ++i) {
         if (is_there()) return true;
         Person::wait(0.1);
     }

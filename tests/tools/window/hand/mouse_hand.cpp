@@ -75,16 +75,19 @@ close
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("who leaves the window lets go of the hand and its buttons", "[display][slow]") {
     check_that_leaving_lets_go([](Person& person) { person.move(1500.0, 1000.0); },
                                [](Person& person) { person.move(600.0, 300.0); });
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("who comes back to the window with a key held presses it anew", "[display][slow]") {
     check_that_leaving_lets_go([](Person& person) { person.take_keyboard(); },
                                [](Person& person) { person.give_keyboard("Tactus"); });
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
@@ -117,6 +120,7 @@ close
     CHECK(again.code == 0);
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("'try' runs the saw in a window with the mouse as hand", "[display][slow]") {
     NEEDS_DISPLAY(display)
     const Folder folder;

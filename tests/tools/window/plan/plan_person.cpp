@@ -58,11 +58,13 @@ public:
     }
     /// Tries again until something is held, as a person does.
     void grasp(const Vec3& point) {
-        for (int i = 0; i < 4; ++i) {
+        for (int i = 0; i < 8; ++i) {
             reach(point);
             press("grasp");
-            Person::wait(1.0);
-            if (const auto held = eyes_.held(); held && glm::length(held->position - point) < 0.02) return;
+            for (int n = 0; n < 30; ++n) {
+                Person::wait(0.1);
+                if (const auto held = eyes_.held(); held && glm::length(held->position - point) < 0.02) return;
+            }
             press("grasp");
         }
         FAIL("nothing is held; " << reached_);
@@ -142,7 +144,8 @@ private:
 
 }  // namespace
 
-TEST_CASE("a person with a mouse puts three fragments together, groups them, undoes two steps and exports",
+// Costly: a window is drawn in software while somebody works in it.
+TEST_CASE("a person with a mouse puts a fragment in its place, groups three, undoes two steps and exports",
           "[display]") {
     for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "plan");
@@ -162,9 +165,7 @@ TEST_CASE("a person with a mouse puts three fragments together, groups them, und
         Planner planner(walk);
         const PlannerEyes& eyes = planner.eyes();
         planner.put("fragment_07", {0.04, -0.007, 0.0});
-        walk.keep("first");
-        planner.put("fragment_02", {0.0, -0.007, -0.04});
-        walk.keep("second");
+        walk.keep("placed");
         const std::size_t placed = eyes.plan().steps.size();
 
         // One group of three, by the list.

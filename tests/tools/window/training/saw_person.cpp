@@ -39,7 +39,8 @@ int letters_in(const Picture& seen, const Spot& box) {
 
 }  // namespace
 
-TEST_CASE("a trainee with a mouse saws the jaw through and reads the score", "[display][live]") {
+// Costly: a window is drawn in software while somebody works in it.
+TEST_CASE("a trainee with a mouse saws the jaw through and reads the score", "[display]") {
     for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "saw");
         if (!walk.is_possible()) return;
