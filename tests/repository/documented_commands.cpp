@@ -120,20 +120,25 @@ std::string verb_of(const std::vector<std::string>& words) {
 
 }  // namespace
 
+// Costly: whole runs and analyses, as a reader would start them.
 TEST_CASE("the commands of README run as written", "[kernel]") { run_page(source_folder() / "README.md"); }
 
 // A case for each page: they wait for runs in real time, and together would end long after all other cases.
 TEST_CASE("the commands of the tutorial 'experiment' run as written", "[kernel]") { run_tutorial("experiment"); }
 TEST_CASE("the commands of the tutorial 'first-node' run as written", "[kernel]") { run_tutorial("first-node"); }
 TEST_CASE("the commands of the tutorial 'first-patch' run as written", "[kernel]") { run_tutorial("first-patch"); }
+// Costly: whole runs and analyses, as a reader would start them.
 TEST_CASE("the commands of the tutorial 'first-plan' run as written", "[kernel]") { run_tutorial("first-plan"); }
+// Costly: whole runs and analyses, as a reader would start them.
 TEST_CASE("the commands of the tutorial 'own-ct-and-saw' run as written", "[kernel]") {
     run_tutorial("own-ct-and-saw");
 }
+// Costly: whole runs and analyses, as a reader would start them.
 TEST_CASE("the commands of the tutorial 'plan-guide-saw' run as written", "[kernel]") {
     run_tutorial("plan-guide-saw");
 }
 TEST_CASE("the commands of the tutorial 'python' run as written", "[kernel]") { run_tutorial("python"); }
+// Costly: whole runs and analyses, as a reader would start them.
 TEST_CASE("the commands of the tutorial 'reconstruction' run as written", "[kernel]") {
     run_tutorial("reconstruction");
 }

@@ -489,6 +489,7 @@ TEST_CASE("a live run with events is repeated bit by bit, also when groups stand
     std::filesystem::remove(log);
 }
 
+// Costly: live runs, repeated until one is on time.
 TEST_CASE("a thousand events a second make nobody late", "[live]") {
     const auto late_ticks = [](const char* every) {
         const PatchText text{{{"p", "burst", "1 kHz", {{"every", every}}},

@@ -445,6 +445,7 @@ using CellMaker = std::function<Cell(const Place&)>;
 
 }  // namespace
 
+// Costly: each kind of fault in each place of a patch.
 TEST_CASE("a fault in a group takes a force away within 20 ms when the force depends on it, and leaves it alone else",
           "[slow][virtual]") {
     for (const CellMaker& make : {CellMaker(hang), CellMaker(overrun), CellMaker(not_a_number), CellMaker(load)})
@@ -468,6 +469,7 @@ TEST_CASE("on one core, too, a fault in a group takes a force away within 20 ms"
         }
 }
 
+// Costly: each kind of fault in each place of a patch.
 TEST_CASE("cables, clocks, edits and pauses take a force away as the table of safety states", "[slow][virtual]") {
     for (const CellMaker& make : {CellMaker(cable), CellMaker(clock_jump), CellMaker(edit), CellMaker(paused)})
         for (const Place& place : places()) {

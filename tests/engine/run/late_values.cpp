@@ -224,6 +224,7 @@ std::string patch_of_faulty(const std::string& rate, const std::string& wires, c
 
 }  // namespace
 
+// Costly: each way to a value that is not finite, at each rate.
 TEST_CASE("a value that is not finite takes the force away when it is computed, at every rate of its group",
           "[virtual][slow]") {
     struct Wrong {

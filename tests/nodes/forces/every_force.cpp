@@ -21,6 +21,7 @@ static const std::map<std::string_view, std::string_view>& only_in_bench() {
     return all;
 }
 
+// Costly: every node that makes a force.
 TEST_CASE("every force that a node makes is continuous, passive on closed paths and within the limit", "[slow]") {
     for (const NodeType* type : force_types()) {
         if (only_in_bench().contains(type->name)) continue;

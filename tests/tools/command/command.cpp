@@ -64,6 +64,7 @@ TEST_CASE("a render leaves recordings and a summary, and the hash depends on nei
     }
 }
 
+// Costly: runs of a patch with a bone.
 TEST_CASE("check says how stiff a hand may feel each path, and what the patch declares", "[slow]") {
     const Folder folder;
     const auto loop = [&](const std::string& settings, int code = 0) {
@@ -182,6 +183,7 @@ TEST_CASE("usage that makes no sense ends in exit code 2", "[slow]") {
         CHECK(folder.tactus(line).code == 0);
 }
 
+// Costly: runs of a patch with a bone.
 TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits on any number of threads", "[slow]") {
     const Folder folder;
     const fs::path out = folder.path / "saw";
@@ -215,6 +217,7 @@ TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits 
     }
 }
 
+// Costly: runs of a patch with a bone.
 TEST_CASE("a live run's log repeats it to the bit", "[slow]") {
     const Folder folder;
     const std::string log = (folder.path / "timing.log").string();

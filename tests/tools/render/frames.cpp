@@ -94,6 +94,7 @@ void check_frames(std::initializer_list<GoldenFrame> frames) {
 }  // namespace
 
 // A primitive, a field, gears, a head, a bone that is being cut.
+// Costly: runs with a bone and rendered pictures.
 TEST_CASE("pictures of the library look as they did", "[slow]") {
     check_frames({{"touch-sphere", "--seconds 1.6 --view-from front"},
                   {"pop-through", "--seconds 2 --view-from front"},
@@ -471,6 +472,7 @@ high_left = "-260 mm, 0 mm, 150 mm"
     CHECK(folder.tactus(render + " --offset far").err.find("study") != std::string::npos);
 }
 
+// Costly: runs with a bone and rendered pictures.
 TEST_CASE("iso shows the front of a bone wherever the tool is, and the default the side of the tool", "[slow]") {
     if (!can_render()) return;
     const Folder folder;

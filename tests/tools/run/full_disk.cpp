@@ -216,6 +216,7 @@ TEST_CASE("a timing log that finds no room keeps whole records and its name", "[
     CHECK(whole_rows(folder.path / "out/table.csv") > 450);
 }
 
+// Costly: whole runs of the command.
 TEST_CASE("bones and pictures that find no room are named, and the rest of the results is there", "[slow]") {
     if (is_sanitized()) return;
     const Folder folder;

@@ -9,6 +9,7 @@ namespace fs = std::filesystem;
 using namespace tactus::test;
 using nlohmann::json;
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("every control of the window does what it says when it is pressed", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;

@@ -53,6 +53,7 @@ void check_golden(const fs::path& made, const std::string& name) {
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a take at an instant looks as it did when somebody looked", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;

@@ -71,6 +71,7 @@ std::string block_of(const fs::path& page, const std::string& file) {
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a newcomer builds the ball patch of the README on an empty canvas, hears it and saves it elsewhere",
           "[display]") {
     for (const WalkWindow& window : walk_windows()) {

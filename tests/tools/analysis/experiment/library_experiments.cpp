@@ -44,6 +44,7 @@ std::vector<experiment::TrialRecord> trials_of_library(const std::string& name, 
 
 }  // namespace
 
+// Costly: trials of a simulated subject.
 TEST_CASE("a fragment that misses its place is drawn there, and is left where it is without the pull", "[slow]") {
     std::map<std::string, std::vector<double>> errors;
     for (const experiment::TrialRecord& trial : trials_of_library("snap", 3)) {

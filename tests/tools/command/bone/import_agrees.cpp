@@ -109,6 +109,7 @@ TEST_CASE("info asks for the unit where import does, and takes it") {
     CHECK(told["components"][0]["bounds_mm"][0][1].get<double>() == Approx(139.0));
 }
 
+// Costly: whole scans are imported.
 TEST_CASE("import says which saw can cut the bone, and carving agrees", "[slow]") {
     const Folder folder;
     const std::string mesh = (folder.path / "jaw.stl").string(), bone = (folder.path / "jaw.vdb").string();

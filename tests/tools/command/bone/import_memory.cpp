@@ -51,6 +51,7 @@ double peak_of_import(const fs::path& ct, const fs::path& out) {
 
 }  // namespace
 
+// Costly: whole scans are imported.
 TEST_CASE("the memory that an import takes does not grow with the layers of the CT", "[slow]") {
     if (sanitized) {
         skip("sanitizers hold memory of their own");

@@ -101,6 +101,7 @@ TEST_CASE("right answers about pushes lift the cap of that device, a wrong one k
     CHECK(json::parse(slurp(bench.folder.path / "config/tactus/devices.json"))["confirmed"].size() == 1);
 }
 
+// Costly: a live run and its replay.
 TEST_CASE("a library patch runs with a device by its driver's name alone, and its take repeats it", "[kernel]") {
     const Bench bench;
     run_and_replay(bench, "saw-training", "force_dimension");

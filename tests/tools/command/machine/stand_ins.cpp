@@ -196,6 +196,7 @@ void run_with_event_device(const std::string& driver, const char* kind, const Sc
 }  // namespace
 
 // Each driver once, each scene with two drivers or three.
+// Costly: a live run and its replay for each driver.
 TEST_CASE("a scene of the library runs with a board and a 2diy, and its take repeats it", "[live]") {
     run_with_board({planning});
     run_with_2diy({sawing});
@@ -205,14 +206,17 @@ TEST_CASE("a scene of the library runs with an Inverse3, and its take repeats it
     run_with_inverse3({gripping});
 }
 
+// Costly: a live run and its replay for each driver.
 TEST_CASE("a scene of the library runs with a 3D mouse, and its take repeats it", "[live]") {
     run_with_3d_mouse({planning});
 }
 
+// Costly: a live run and its replay for each driver.
 TEST_CASE("a scene of the library runs with a tracked tool, and its take repeats it", "[live]") {
     run_with_tracked_tool({sawing});
 }
 
+// Costly: a live run and its replay for each driver.
 TEST_CASE("a scene of the library runs with a wheel and with a gamepad, and its take repeats it", "[live]") {
     run_with_event_device("wheel", "wheel", {gripping});
     run_with_event_device("gamepad", "pad", {sawing});

@@ -86,6 +86,7 @@ bool says(const std::string& text, const std::string& what) { return text.find(w
 
 }  // namespace
 
+// Costly: fits between all fragments of a bone are searched.
 TEST_CASE("a jaw in four pieces is put together in one call, undone step by step, and stays when it is done",
           "[slow]") {
     const Broken jaw;
@@ -123,6 +124,7 @@ TEST_CASE("a jaw in four pieces is put together in one call, undone step by step
     CHECK(file["steps"].empty());
 }
 
+// Costly: fits between all fragments of a bone are searched.
 TEST_CASE("a fibula in three pieces is put together, and a piece of another bone stays out with a reason", "[slow]") {
     const Broken fibula;
     fibula.break_bone("fibula", "f", "--pieces 3 --seed 21");

@@ -96,6 +96,7 @@ TEST_CASE("a fit is void when its partner moves away, holds in a moved group, an
     CHECK(row.verdict(1) == "fit");
 }
 
+// Costly: fits between fragments are searched.
 TEST_CASE("a plan says what is connected to what, and fragments in several parts are not finished", "[slow]") {
     const Row row;
     row.fit("b", "a", "-1,0,0,1,0,0,0");

@@ -57,6 +57,7 @@ bool is_one_line(const std::string& text) { return std::ranges::count(text, '\n'
 
 }  // namespace
 
+// Costly: a case with all its bones runs, is killed and is opened again.
 TEST_CASE("a live case that is killed is on disk as far as it went, and opens with the same bits", "[kernel]") {
     const Folder folder;
     const fs::path out = folder.path / "out", plan = out / "case.plan.json", take = folder.path / "take";

@@ -193,6 +193,7 @@ TEST_CASE("thresholds of a flap are parameters of the plan, and a warning follow
         ContainsSubstring("negative 'clearance'"));
 }
 
+// Costly: a reconstruction is planned and written by several commands.
 TEST_CASE("a candidate of the ranking becomes an alternative of the plan in one command", "[slow]") {
     const FlapCase made;
     REQUIRE(made.run(made.whole()).code == 0);
@@ -234,6 +235,7 @@ TEST_CASE("a candidate of the ranking becomes an alternative of the plan in one 
     CHECK(made.change("reach", "--alternative x").code == 2);
 }
 
+// Costly: a reconstruction is planned and written by several commands.
 TEST_CASE("a second reconstruction of a plan is an alternative with its own pieces, and the report shows both",
           "[slow]") {
     const FlapCase made;

@@ -29,6 +29,7 @@ bool has_program(const char* command) { return std::system((std::string(command)
 
 }  // namespace
 
+// Costly: a reconstruction is planned and written by several commands.
 TEST_CASE("plan guide writes a closed guide with each slot on its osteotomy", "[slow]") {
     const GuideCase made;
     const test::Outcome done = made.guide("guide.stl", "--json");

@@ -172,6 +172,7 @@ bool echoes_every_frame(const Folder& folder, const std::string& file, int perio
 
 }  // namespace
 
+// Costly: seconds of sound through a server, live and repeated.
 TEST_CASE("what a client plays is heard and played to the sample, at one distance, and a take repeats it", "[live]") {
     if (!has_server()) return;
     const Folder folder;

@@ -36,6 +36,7 @@ TEST_CASE("check warns when the energy cap of an output is off") {
     CHECK(off["warnings"][0].get<std::string>().find("energy cap is off") != std::string::npos);
 }
 
+// Costly: the stiffness that each device bears is found by simulation.
 TEST_CASE("check lists and draws which walls a device bears", "[slow]") {
     const Folder folder;
     const std::string figure = (folder.path / "walls.svg").string();

@@ -101,6 +101,7 @@ TEST_CASE("what a second client records of a live run is the offline render, sam
 
 TEST_CASE("a server in freewheel gets every sample, too", "[live]") { check_playing(true, {64, 1024}); }
 
+// Costly: seconds of sound through a server, live.
 TEST_CASE("a server that dies leaves a run that ends by itself, silent, with faded forces and a whole take",
           "[kernel]") {
     if (!has_server()) return;

@@ -104,6 +104,7 @@ json scored(const Folder& folder, const std::string& words) {
 
 }  // namespace
 
+// Costly: tasks of the library are sawn from begin to end.
 TEST_CASE("a blade on a path of known deviation scores within 0.05 mm and 0.2 degrees", "[slow]") {
     for (const auto& [voxel, aside, turns] :
          {std::tuple{0.3 * mm, 0.0, Vec3(0.0)}, std::tuple{0.3 * mm, 0.62, Vec3(1.5, 0.0, 2.5)},
@@ -201,6 +202,7 @@ TEST_CASE("an attempt whose force was away says so, and one whose force nobody r
     CHECK(folder.tactus("score " + unsaid).out.find(warning) == std::string::npos);
 }
 
+// Costly: tasks of the library are sawn from begin to end.
 TEST_CASE("runs that cannot be scored are refused with what to do", "[slow]") {
     const Folder folder;
     write_block(folder, 0.3 * mm);
@@ -283,6 +285,7 @@ TEST_CASE("a worse hand scores worse in every measure, and a take scores as its 
 }
 
 // Renders a minute and a half of two tasks.
+// Costly: tasks of the library are sawn from begin to end.
 TEST_CASE("the hand of the library passes the tasks of the library", "[slow]") {
     const Folder folder;
     const std::string out = (folder.path / "out").string();

@@ -105,6 +105,7 @@ TEST_CASE("a session that is killed goes on with the next task and keeps what wa
     CHECK(json::parse(all.out)["rows"][0]["trainee"] == "P01");
 }
 
+// Costly: tasks of the library are sawn from begin to end.
 TEST_CASE("Ctrl-C ends the attempt and the session, and the same command goes on", "[slow]") {
     const Folder folder;
     const fs::path session = folder.path / "out/P01/1";

@@ -380,6 +380,7 @@ TEST_CASE("of several channels the strongest of the reference is compared with t
     CHECK(folder.tactus("compare " + reference + " " + mono + " --axes vector").code == 2);
 }
 
+// Costly: a recording of more than 5 min.
 TEST_CASE("compare needs no more memory for a longer recording", "[slow]") {
     if (tactus::test::sanitized) return tactus::test::skip("sanitizers hold memory of their own");
     const Folder folder;

@@ -84,6 +84,7 @@ TEST_CASE("letters that a border cuts are found where nothing scrolls, and only 
     CHECK(cut_by(in_panel(ImGuiWindowFlags_HorizontalScrollbar)) == "");
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("no border cuts a letter of menus, dialogs and panels in windows of any size", "[display]") {
     const VirtualDisplay display(1800, 1300);
     if (!display.is_there()) return skip("Xvfb is not installed (apt install xvfb)");

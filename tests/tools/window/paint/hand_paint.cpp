@@ -89,6 +89,7 @@ TEST_CASE("labels are computed by threads of low priority") {
     CHECK(::getpriority(PRIO_PROCESS, static_cast<id_t>(::gettid())) == mine);
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a hand paints while the labels follow, and has the strokes and labels that the mouse would have",
           "[display]") {
     NEEDS_DISPLAY(display)

@@ -35,6 +35,7 @@ void write_scan(const std::filesystem::path& path) {
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a script paints, undoes, follows a vessel, makes a plan, and the labels are written", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;

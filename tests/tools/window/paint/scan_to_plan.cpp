@@ -113,6 +113,7 @@ TEST_CASE("commands lead from a DICOM folder to a plan of fragments and a vessel
     CHECK(slurp(folder.path / "case.plan.json") == before);
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("the window leads from a DICOM folder to a plan of fragments and a vessel", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
@@ -153,6 +154,7 @@ close
     CHECK(plan("case-3.plan.json")["vessels"].empty());
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a person leads from a DICOM folder to a plan with mouse and keyboard", "[display]") {
     NEEDS_PERSON(person, display)
     const Folder folder;

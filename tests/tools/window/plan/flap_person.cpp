@@ -87,6 +87,7 @@ TEST_CASE(
     }
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a planner with a mouse adds a vessel, a site and a margin, and a plate keeps how it was laid", "[display]") {
     for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "forms");

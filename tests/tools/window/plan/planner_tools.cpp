@@ -30,6 +30,7 @@ bool is_red(int r, int g, int b) { return r > 90 && r > 2 * g && r > 2 * b; }
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compares, cuts, measures and saves for Slicer",
           "[display]") {
     for (const WalkWindow& window : walk_windows()) {
@@ -129,6 +130,7 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
     }
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a planner with a mouse gives an alternative another name, but not that of another one", "[display]") {
     for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "name");

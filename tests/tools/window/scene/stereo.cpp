@@ -47,6 +47,7 @@ frequency = "1 Hz"
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("in the window the scene is seen in stereo, with a head, through a display and in separate windows",
           "[display]") {
     NEEDS_DISPLAY(display)
@@ -97,6 +98,7 @@ close
     }
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("the command line opens the windows of a display, and a driver without two buffers is told from one with",
           "[display]") {
     NEEDS_DISPLAY(display)

@@ -33,6 +33,7 @@ int count(const Person& person, const Spot& part, const Vec3& colour, int within
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a planner's click in a slice of a CT moves the cursor of the scene, and a click on bone that of the slices",
           "[display]") {
     for (const WalkWindow& window : walk_windows()) {
@@ -101,6 +102,7 @@ TEST_CASE("a planner's click in a slice of a CT moves the cursor of the scene, a
     }
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("a scan that is given for one case is not shown beside another one, nor remembered for it", "[display]") {
     Walk walk(small_window, "other-case");
     if (!walk.is_possible()) return;
