@@ -14,7 +14,8 @@ SawBlade::SawBlade(const SawShape& shape, double stiffness)
     : shape_(shape),
       teeth_(shape, stiffness),
       body_(blade_body(shape, stiffness), stiffness, shape.kerf),
-      front_(blade_front(shape, stiffness), stiffness, 0.0, false) {
+      front_(blade_front(shape, stiffness), stiffness, 0.0, false),
+      take_over_(stiffness, 0.5 * shape.length + shape.height) {
     // Largest curvature of ½‖u‖₈²: as in contact::blade_contact, whose 44 teeth have 4.
     tooth_spring_ = stiffness / (4.0 * std::sqrt(std::sqrt(static_cast<double>(teeth_.teeth().size()) / 44.0)));
 }
@@ -26,6 +27,7 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
     if (!is_valid(pose) || glm::length(pose.position) > 1e3 || !(drive.dt > 0.0)) {
         teeth_.forget();
         hold_.drop();
+        take_over_.drop();
         stuck_ = false;
         return contact;
     }
@@ -60,15 +62,17 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
         if (guide) front_.release(in_guide, hold_.kept());
     } else {
         stuck_ = false;
+        take_over_.drop();
         return contact;
     }
     const Mat3 axes(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
-    push_teeth(axes, pose.position, law, drive.running, contact);
+    double energy = push_teeth(axes, pose.position, law, drive.running, contact);
     const auto add = [&](const ToolBody::Sum& body) {
         contact.wrench = contact.wrench + body.wrench;
         contact.magnitudes += body.magnitudes;
         contact.lag = std::max(contact.lag, body.lag);
         contact.count += body.count;
+        energy += body.energy;
     };
     add(body_.push(pose.position));
     if (guide) {
@@ -79,13 +83,15 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
     contact.side = std::abs(glm::dot(contact.wrench.force, axes[2]));
     stuck_ = contact.lag >= max_lag || glm::dot(contact.wrench.force, axes[1]) > 0.0 ||
              (contact.count > 0 && drive.rendered < 1.0);
+    contact.wrench = take_over_.follow(contact.wrench, energy, pose, drive.dt);
     return contact;
 }
 
-void SawBlade::push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw& law, bool running,
-                          SawContact& into) noexcept {
+/// Returns the energy of their springs, J.
+double SawBlade::push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw& law, bool running,
+                            SawContact& into) noexcept {
     const double norm = teeth_.squared_norm();
-    if (!(norm > 0.0)) return;
+    if (!(norm > 0.0)) return 0.0;
     const double bearing = teeth_.bearing();
     for (const Tooth& tooth : teeth_.teeth()) {
         const double square = tooth.square();
@@ -105,6 +111,7 @@ void SawBlade::push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw&
         const double share = tooth.density[1] / law.reference_density;
         if (running) into.along += law.along(thrust / (bearing * share)) * bearing * share;
     }
+    return 0.5 * tooth_spring_ * norm;
 }
 
 }  // namespace tactus::saw

@@ -2,6 +2,7 @@
 // A saw blade in a bone: the force that it feels and the front that it cuts.
 #pragma once
 
+#include "dsp/saw/take_over.hpp"
 #include "dsp/saw/tool_body.hpp"
 #include "dsp/saw/tool_hold.hpp"
 #include "dsp/saw/tooth_row.hpp"
@@ -37,13 +38,14 @@ public:
     const ToolBody& body() const noexcept { return body_; }
 
 private:
-    void push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw& law, bool running,
-                    SawContact& into) noexcept;
+    double push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw& law, bool running,
+                      SawContact& into) noexcept;
 
     SawShape shape_;
     ToothRow teeth_;
     ToolBody body_, front_;  // the front meets guides only, in their frame
     ToolHold hold_;
+    TakeOver take_over_;
     double tooth_spring_ = 0.0;
     Pose last_;
     bool stuck_ = false;  // in the last tick

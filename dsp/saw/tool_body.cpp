@@ -326,6 +326,7 @@ ToolBody::Sum ToolBody::push(const Vec3& about) noexcept {
     }
     const double norm = squared_norm8(squares_);
     if (!(norm > 0.0)) return sum;
+    sum.energy = 0.5 * spring_ * norm;
     for (std::size_t k = 0; k < held_.size(); ++k) {
         const BodyPoint& p = points_[held_[k]];
         const Vec3 lag = (p.target - p.at) * axes_;

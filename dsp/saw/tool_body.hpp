@@ -79,6 +79,7 @@ public:
         Wrench wrench;  ///< about the given origin, N and N·m
         double magnitudes = 0.0;  ///< N, sum of the sizes of the balls' forces
         double lag = 0.0;  ///< m, the greatest
+        double energy = 0.0;  ///< J, of the springs
         int count = 0;  ///< balls with a force
     };
     Sum push(const Vec3& about) noexcept;

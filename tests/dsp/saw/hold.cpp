@@ -221,3 +221,38 @@ TEST_CASE("teeth cut with what the device renders of their thrust") {
     CHECK(removed(0.5) == Approx(all).epsilon(0.1));
     CHECK(removed(0.0) == 0.0);
 }
+
+TEST_CASE(
+    "a force that other points take over comes in without a step, and is given no energy that the tool did not lose") {
+    constexpr double stiffness = 20e3;
+    for (const bool moves : {false, true}) {
+        saw::TakeOver take_over(stiffness, 0.02);
+        const Wrench before{{0.0, 10.0, 0.0}, {}}, after{{8.0, 2.0, 0.0}, {0.0, 0.0, 0.05}};
+        constexpr double lost = 3e-3;  // J
+        Pose pose;
+        for (int n = 0; n < 10; ++n) CHECK(take_over.follow(before, 5e-3, pose, 1e-3).force.y == 10.0);
+        Wrench last = before;
+        double rise = 0.0, held_back = 0.0, energy = 5e-3 - lost;
+        for (int n = 0; n < 150; ++n) {
+            // Against the force that comes in: what holds it back would help the hand.
+            const Vec3 way = moves ? Vec3(-0.02e-3, 0.0, 0.0) : Vec3(0.0);
+            pose.position += way;
+            held_back += glm::dot(last.force - (n == 0 ? before : after).force, way);
+            energy -= glm::dot((n == 0 ? before : after).force, way);
+            const Wrench now = take_over.follow(after, energy, pose, 1e-3);
+            rise = std::max(rise, now.force.x - last.force.x);
+            CHECK(now.force.y >= 1.999);
+            last = now;
+        }
+        CAPTURE(moves, rise, held_back);
+        // 8 N in 100 ms; beside it what the spring of the motion explains.
+        CHECK(rise < (moves ? 2.0 * stiffness * 0.02e-3 + 0.3 : 0.1));
+        CHECK(held_back <= lost);
+        CHECK(last.force.x == Approx(8.0));
+        CHECK(last.torque.z == Approx(0.05));
+    }
+    // What only falls, falls at once.
+    saw::TakeOver take_over(stiffness, 0.02);
+    take_over.follow({{0.0, 10.0, 0.0}, {}}, 5e-3, {}, 1e-3);
+    CHECK(glm::length(take_over.follow({{0.0, 3.0, 0.0}, {}}, 1e-3, {}, 1e-3).force) == Approx(3.0));
+}
