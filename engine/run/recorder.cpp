@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <unordered_set>
 #include <utility>
 
@@ -58,17 +59,31 @@ void Recorder::want(bool wanted) {
     if (!take_) throw Error("this run keeps no journal, so it cannot be recorded from here; restart it");
     if (wanted && take_->is_lost()) throw Error(take_->loss());
     wants_ = wanted;
+    // Who asks for values while the run goes on gets all of them.
+    if (wanted) take_->limit_values(0);
 }
 
 void Recorder::service(Timeline& timeline, bool is_building, Flicks now) {
     if (!take_) return;
     if (!was_recorded_ && take_->size() > longest_journal_)
         return give_up(fmt::format("its journal has grown beyond {} MB", longest_journal_ >> 20));
+    note_limit();
     if (is_building) return;
     taps_.finish_past();
     // A plan that is on its way has its streams already, or was built without any.
     if (wants_ == records_ || timeline.is_changing()) return;
     wants_ ? begin(timeline, now) : end(now);
+}
+
+void Recorder::note_limit() {
+    if (has_noted_limit_) return;
+    const std::optional<double> at = take_->values_limited_at();
+    if (!at) return;
+    has_noted_limit_ = true;
+    host_.notices.push_back(
+        fmt::format("the take holds values up to {:.4g} s, {} MB; it repeats the rest ('replay --record' writes all, "
+                    "'--values' records all)",
+                    *at, take::max_first_bytes / 1'000'000));
 }
 
 void Recorder::begin(Timeline& timeline, Flicks time) {
@@ -146,6 +161,7 @@ void Recorder::finish(const PortHashes& hashes) {
     for (const auto& card : host_.cards) card->close();
     if (take_) {
         take_->finish(hashes);
+        note_limit();
         taps_.note_drops(losses_);
     }
     note_losses();

@@ -59,6 +59,8 @@ private:
     void begin(Timeline& timeline, Flicks time);
     void end(Flicks now);
     void give_up(const std::string& why);
+    /// Notes once that values ended by their limit.
+    void note_limit();
 
     io::EngineHost& host_;
     Losses& losses_;
@@ -67,7 +69,7 @@ private:
     std::mutex journal_lock_;
     Journal journal_;  // under it
     Taps taps_;
-    bool wants_ = false, records_ = true, was_recorded_ = false;
+    bool wants_ = false, records_ = true, was_recorded_ = false, has_noted_limit_ = false;
 };
 
 }  // namespace tactus::run

@@ -30,7 +30,8 @@ TakeCopy::TakeCopy(const Take& from, fs::path folder)
         std::ifstream events(from_.folder / "events.jsonl");
         std::string text;
         for (std::int64_t n = 0; n < from_.lines && std::getline(events, text); ++n)
-            if (!Json::parse(text).contains("stream")) line(text);
+            if (const Json event = Json::parse(text); !event.contains("stream") && !event.contains("values_end_s"))
+                line(text);
     } catch (const fs::filesystem_error& error) {
         events_.reset();
         fs::remove_all(folder_, failure);

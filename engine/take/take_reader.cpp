@@ -109,6 +109,7 @@ void read_streams(const ParsedJson& json, std::vector<TakeStreamInfo>& streams) 
 void read_event(const ParsedJson& json, Take& take) {
     if (json.contains("device")) take.devices.push_back(read_device(json));
     else if (json.contains("stream")) read_streams(json, take.streams);
+    else if (json.contains("values_end_s")) take.values_end_s = json.at("values_end_s");
     else if (json.contains("plan")) {
         TakenEdit edit;
         edit.number = json.at("plan");
@@ -259,6 +260,11 @@ void Take::require_values() const {
     if (streams.empty())
         throw Error(fmt::format("{0}: the take has no values; write it with values by 'tactus replay {0} --record NEW'",
                                 folder.string()));
+    if (values_end_s)
+        throw Error(
+            fmt::format("{0}: the values end at {1:.4g} s, before the run; write all of them by 'tactus replay {0} "
+                        "--record NEW'",
+                        folder.string(), *values_end_s));
 }
 
 void Take::drop_unreadable_streams() {

@@ -57,6 +57,7 @@ struct Take {
     std::vector<io::RecordedDevice> devices;
     std::vector<TakeStreamInfo> streams;
     TimingLog log;
+    std::optional<double> values_end_s;  ///< values end there by their limit, before the run
     std::int64_t lines = 0;  ///< number of lines of events.jsonl
     bool is_complete = false;  ///< the run ended normally; false: the take ends early
     std::map<std::string, std::uint64_t> result;  ///< hash of every output; empty if the take ends early
@@ -73,7 +74,7 @@ struct Take {
     /// Returns the files whose length differs from the length that the run wrote. In an incomplete take only the log
     /// can be checked.
     std::vector<TakeDamage> damages() const;
-    /// Throws Error if the run recorded no values.
+    /// Throws Error unless the take holds all values of the run.
     void require_values() const;
     /// Removes unreadable streams.
     void drop_unreadable_streams();

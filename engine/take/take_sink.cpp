@@ -4,6 +4,7 @@
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -33,6 +34,14 @@ void TakeSink::take(std::int64_t first, const std::byte* frames, std::size_t cou
 }
 
 void TakeSink::write(std::int64_t first, const std::byte* frames, std::size_t count) {
+    if (is_over_) return;
+    if (!end_) end_ = told_.end();
+    if (first + static_cast<std::int64_t>(count) > *end_) {
+        count = static_cast<std::size_t>(std::max<std::int64_t>(0, *end_ - first));
+        is_over_ = true;
+        told_.ended();
+    }
+    if (count == 0) return;
     for (std::size_t i = 0; i < files_.size(); ++i) {
         const bool is_first = i == writers_.size();
         if (is_first)

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+#include <limits>
 
 namespace tactus::take {
 
@@ -27,7 +29,7 @@ std::string TakeStreams::file_for(const std::string& group) {
 std::unique_ptr<io::Sink> TakeStreams::sink(const std::filesystem::path& folder, const io::FrameLayout& layout,
                                             const run::GroupRuntime& group) {
     std::vector<TakeFile> files;
-    int channels = max_channels;
+    int channels = max_channels, all = 0;
     for (const io::FrameColumn& column : layout.columns) {
         const auto wide = static_cast<int>(channels_of(*column.type).size());
         if (channels + wide > max_channels) {
@@ -36,6 +38,11 @@ std::unique_ptr<io::Sink> TakeStreams::sink(const std::filesystem::path& folder,
         }
         files.back().columns.push_back(column);
         channels += wide;
+        all += wide;
+    }
+    {
+        const std::lock_guard lock(guard_);
+        bytes_per_second_ += sizeof(double) * all * rate_of(group.plan->period);
     }
     return std::make_unique<TakeSink>(
         folder, group.plan->period, layout.bytes, std::move(files),
@@ -43,15 +50,42 @@ std::unique_ptr<io::Sink> TakeStreams::sink(const std::filesystem::path& folder,
             .opened = [this, &group](const TakeFile& file, std::int64_t start) { opened(file, start, group); },
             .finished =
                 [this](const std::string& file, std::int64_t frames) {
-                    const std::lock_guard lock(finishing_);
+                    const std::lock_guard lock(guard_);
                     frames_[file] = frames;
                 },
+            .end = [this, period = group.plan->period] { return end_of(period); },
+            .ended = [this] { limited(); },
             .cut = [this] { is_cut_ = true; }});
 }
 
 std::map<std::string, std::int64_t> TakeStreams::frames() const {
-    const std::lock_guard lock(finishing_);
+    const std::lock_guard lock(guard_);
     return frames_;
+}
+
+void TakeStreams::limit(std::uint64_t bytes) {
+    const std::lock_guard lock(guard_);
+    max_bytes_ = bytes;
+}
+
+std::optional<double> TakeStreams::limited_at() const {
+    const std::lock_guard lock(guard_);
+    return limited_at_;
+}
+
+std::int64_t TakeStreams::end_of(Flicks period) const {
+    const std::lock_guard lock(guard_);
+    if (max_bytes_ == 0 || !(bytes_per_second_ > 0.0)) return std::numeric_limits<std::int64_t>::max();
+    return static_cast<std::int64_t>(static_cast<double>(max_bytes_) / bytes_per_second_ / seconds(period));
+}
+
+void TakeStreams::limited() {
+    {
+        const std::lock_guard lock(guard_);
+        if (limited_at_) return;
+        limited_at_ = static_cast<double>(max_bytes_) / bytes_per_second_;
+    }
+    write_line_(Json{{"values_end_s", *limited_at()}}.dump());
 }
 
 void TakeStreams::opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group) {

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_set>
 
@@ -23,6 +24,9 @@ namespace tactus::take {
 
 struct TakeFile;
 
+/// Bytes of values with which a take of an hour stays small: a hand at 1 kHz that moves all the time has 217 MB of decisions.
+inline constexpr std::uint64_t max_first_bytes = 30'000'000;
+
 class TakeStreams {
 public:
     /// `write_line` adds a line to events.jsonl when a file is opened; it may throw Error, and is called by any thread that
@@ -33,6 +37,11 @@ public:
     /// the first frame.
     std::unique_ptr<io::Sink> sink(const std::filesystem::path& folder, const io::FrameLayout& layout,
                                    const run::GroupRuntime& group);
+    /// Values end where all files together have `bytes`: each file at the same time, which depends on nothing but the outputs.
+    /// 0: no limit, for files that are opened from then on.
+    void limit(std::uint64_t bytes);
+    /// Time at which values ended by the limit, s from the begin of the run; none: they did not. Any thread.
+    std::optional<double> limited_at() const;
     /// True if one of the files ends before the run.
     bool is_cut() const noexcept { return is_cut_; }
     /// Number of frames of each completed file.
@@ -42,10 +51,16 @@ private:
     /// Returns a name that no other file of the take has.
     std::string file_for(const std::string& group);
     void opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group);
+    /// Returns the activation from which on a group of that period has no values.
+    std::int64_t end_of(Flicks period) const;
+    void limited();
 
     std::function<void(const std::string&)> write_line_;
-    mutable std::mutex finishing_;
-    std::map<std::string, std::int64_t> frames_;
+    mutable std::mutex guard_;
+    std::map<std::string, std::int64_t> frames_;  // under it, as are the next two
+    double bytes_per_second_ = 0.0;  // of all outputs that had a sink
+    std::optional<double> limited_at_;  // s
+    std::uint64_t max_bytes_ = 0;  // 0: no limit
     std::atomic<bool> is_cut_{false};
     std::unordered_set<std::string> files_;
 };

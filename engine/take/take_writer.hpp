@@ -60,6 +60,9 @@ public:
     /// Returns the sink for the frames of a group: files of at most `max_channels` channels, opened at the first
     /// frame.
     std::unique_ptr<io::Sink> sink(const io::FrameLayout& layout, const run::GroupRuntime& group);
+    /// As TakeStreams::limit and TakeStreams::limited_at.
+    void limit_values(std::uint64_t bytes) { streams_.limit(bytes); }
+    std::optional<double> values_limited_at() const { return streams_.limited_at(); }
     /// Describes the assets of an edit, which reads all of them. Any thread. Throws Error.
     static std::string describe_assets(const patch::Patch& patch);
     /// Records the plan that takes over at `when`; `assets` from describe_assets.

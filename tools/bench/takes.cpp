@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Size of a take per hour, for a hand that moves in contact all the time and for one that rests.
+// Size of a take of an hour, for a hand that moves in contact all the time and for one that rests.
 #include "assets/file/json.hpp"
+#include "engine/take/take_streams.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/run/rendered_run.hpp"
 #include "tools/run/scratch_folder.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -47,8 +49,15 @@ damping = "30 N s/m"
     return text;
 }
 
-/// MB per hour of all files of a take, and of its log.
-std::pair<double, double> recorded(const std::string& text, double seconds, bool values) {
+/// MB per hour.
+struct TakeSize {
+    double log = 0.0, streams = 0.0, all = 0.0;
+
+    /// Of a take of an hour without --values.
+    double by_default() const { return all - streams + std::min(streams, 1e-6 * take::max_first_bytes); }
+};
+
+TakeSize recorded(const std::string& text, double seconds) {
     const run::ScratchFolder folder;
     run::RunChoice choice;
     choice.patch = (folder.path() / "patch.toml").string();
@@ -56,37 +65,37 @@ std::pair<double, double> recorded(const std::string& text, double seconds, bool
     choice.seconds = seconds;
     choice.out = folder.path() / "out";
     choice.record = folder.path() / "take";
-    choice.record_values = values;
     compile::AssetCache assets;
     const std::atomic<bool> stop{false};
     run::render_run(choice, assets, stop, [](double) {});
-    std::uintmax_t bytes = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(choice.record))
-        if (entry.is_regular_file()) bytes += entry.file_size();
-    const double an_hour = 1e-6 * 3600.0 / seconds;
-    return {an_hour * static_cast<double>(bytes),
-            an_hour * static_cast<double>(fs::file_size(choice.record / "timing.log"))};
+    TakeSize size;
+    for (const auto& entry : fs::recursive_directory_iterator(choice.record)) {
+        if (!entry.is_regular_file()) continue;
+        const double bytes = 1e-6 * 3600.0 / seconds * static_cast<double>(entry.file_size());
+        size.all += bytes;
+        if (entry.path().parent_path().filename() == "streams") size.streams += bytes;
+        if (entry.path().filename() == "timing.log") size.log = bytes;
+    }
+    return size;
 }
 
 int bench_takes(const TakesBenchChoice& choice) {
     file::Json rows = file::Json::array();
     if (!choice.json)
-        fmt::print("{:8} {:8} {:>14} {:>18} {:>16}   MB per hour\n", "device", "hand", "decisions", "without values",
-                   "with values");
+        fmt::print("{:8} {:8} {:>14} {:>14} {:>16}   MB of an hour\n", "device", "hand", "decisions", "default",
+                   "with --values");
     for (const char* model : {"", "touch", "omega", "falcon"})
         for (const bool is_moving : {true, false}) {
-            const std::string text = patch_text(model, is_moving);
-            const auto [without, log] = recorded(text, choice.seconds, false);
-            const auto [with, same] = recorded(text, choice.seconds, true);
+            const TakeSize size = recorded(patch_text(model, is_moving), choice.seconds);
             const char* name = *model ? model : "ideal";
             rows.push_back({{"device", name},
                             {"moving", is_moving},
-                            {"log_mb_per_h", log},
-                            {"without_values_mb_per_h", without},
-                            {"with_values_mb_per_h", with}});
+                            {"log_mb_per_h", size.log},
+                            {"default_mb_of_an_hour", size.by_default()},
+                            {"with_values_mb_per_h", size.all}});
             if (!choice.json)
-                fmt::print("{:8} {:8} {:14.1f} {:18.1f} {:16.0f}\n", name, is_moving ? "moving" : "resting", log,
-                           without, with);
+                fmt::print("{:8} {:8} {:14.1f} {:14.1f} {:16.0f}\n", name, is_moving ? "moving" : "resting", size.log,
+                           size.by_default(), size.all);
         }
     if (choice.json) fmt::print("{}\n", rows.dump(2));
     return done;
@@ -95,7 +104,8 @@ int bench_takes(const TakesBenchChoice& choice) {
 }  // namespace
 
 Verb takes_verb() {
-    return {"takes", "size of a take per hour, with and without values, of a hand that moves and of one that rests",
+    return {"takes",
+            "size of a take of an hour, by default and with all values, of a hand that moves and of one that rests",
             [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<TakesBenchChoice>();
                 verb.add("--seconds", choice->seconds, "of each run, s").unit("s").shows_default().range(1.0, 3600.0);

@@ -58,8 +58,10 @@ void add_site_options(VerbOptions& verb, run::SiteText& text) {
 
 void add_record_options(VerbOptions& verb, std::filesystem::path& folder, bool& values) {
     const Option record = verb.add("--record", folder, "record the run as a take, a folder that 'replay' repeats");
-    verb.flag("!--no-values", values,
-              "record no values, for runs of hours: the take still repeats them, and 'replay --record' writes them")
+    values = false;
+    verb.flag("--values", values,
+              "record every value, not only the first 30 MB: the take repeats all of them in each case, and 'replay "
+              "--record' writes them")
         .needs(record);
 }
 

@@ -25,7 +25,7 @@ void use_saw(run::PatchChoice& choice, const run::SawChoice& saw);
 /// --site, --approach and --along, for run::choose_site.
 void add_site_options(VerbOptions& verb, run::SiteText& text);
 
-/// --record and --no-values.
+/// --record and --values.
 void add_record_options(VerbOptions& verb, std::filesystem::path& folder, bool& values);
 
 }  // namespace tactus::command

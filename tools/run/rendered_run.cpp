@@ -28,7 +28,7 @@ RenderedRun render(const RunChoice& choice, compile::AssetCache& assets, observe
     if (!choice.record.empty()) {
         take = make_take(choice, choice.record, options.seconds, false);
         options.take = take.get();
-        if (!choice.record_values) options.take_values = run::TakeValues::none;
+        if (!choice.record_values) take->limit_values(take::max_first_bytes);
     }
     run::Engine engine(std::move(plan), options);
     drive(engine);

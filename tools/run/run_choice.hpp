@@ -17,7 +17,7 @@ struct RunChoice : PatchChoice {
     std::string audio;         ///< "", "file", "none", "default" or a substring of a card's name
     double audio_margin = 10;  ///< ms
     std::filesystem::path out, log, record;
-    bool record_values = true;  ///< the take holds values, besides the decisions that repeat them
+    bool record_values = true;  ///< all values, and not only the first, besides the decisions
     bool overwrite = false;   ///< replace existing results
     bool is_further = false;  ///< an earlier run in the same window uses the folder
     bool keeps_journal = false;  ///< allows recording to start during the run

@@ -56,7 +56,7 @@ RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, obs
     if (!choice.record.empty()) {
         take_ = make_take(choice, choice.record, options.seconds, true);
         options.take = take_.get();
-        if (!choice.record_values) options.take_values = run::TakeValues::none;
+        if (!choice.record_values) take_->limit_values(take::max_first_bytes);
     } else if (choice.keeps_journal) begin_journal(options);
     engine_ = std::make_unique<run::Engine>(std::move(plan), options);
     check_log(*engine_, choice.log, folder());

@@ -24,8 +24,10 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 /// Renders 0.2 s into a take; each text after the first takes over a while after the one before.
-run::Engine::PortHashes rendered(const fs::path& folder, const std::vector<std::string>& texts) {
+run::Engine::PortHashes rendered(const fs::path& folder, const std::vector<std::string>& texts,
+                                 std::uint64_t max_bytes = 0) {
     take::TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.2, .live = false});
+    take.limit_values(max_bytes);
     run::EngineOptions options;
     options.seconds = 0.2;
     options.take = &take;
@@ -115,6 +117,40 @@ TEST_CASE("a take has one file for each group, and a new one where an edit chang
         values += take::TakeStreamReader(folder / info.file, info).frames();
     }
     CHECK(values == 2 * (3 * 50 + 4 * 150 + 12));
+    fs::remove_all(folder);
+}
+
+TEST_CASE("values end where all files have the bytes that they may have, and the take repeats the rest to its hash") {
+    const auto folder = scratch("limit");
+    const std::string more = "[nodes.slow]\ntype = \"chaos\"\nrate = \"60 Hz\"\n";
+    // Eight channels of 8 bytes for each of three nodes at 1 kHz and one at 60 Hz: 195.84 kB/s.
+    const auto hashes = rendered(folder, {constants(3, more)}, 19'584);
+    const take::Take take = take::Take::load(folder);
+    REQUIRE(take.values_end_s);
+    CHECK(*take.values_end_s == Approx(0.1));
+    CHECK(take.is_complete);
+    CHECK(take.damages().empty());
+    for (const take::TakeStreamInfo& info : take.streams)
+        CHECK(take::TakeStreamReader(folder / info.file, info).frames() == (info.group == "60 Hz" ? 6 : 100));
+    const Repetition again = repeat(folder, 2);
+    CHECK_FALSE(again.difference);
+    CHECK(again.compared == 2 * (3 * 100 + 6));
+    CHECK(again.hashes == hashes);
+    CHECK_THROWS_AS(take.require_values(), Error);
+    fs::remove_all(folder);
+
+    // Edits at 0.05 s and 0.1 s, of 192, 384 and 576 kB/s: the rates of all count, so values end at 87 ms.
+    rendered(folder, {constants(3), constants(6), constants(9)}, 100'000);
+    std::uintmax_t bytes = 0;
+    for (const auto& file : files_of(take::Take::load(folder))) bytes += fs::file_size(folder / file);
+    CHECK(files_of(take::Take::load(folder)).size() == 2);
+    CHECK(bytes < 100'000 + 2 * 8'000);  // headers
+    CHECK_FALSE(repeat(folder, 1).difference);
+    fs::remove_all(folder);
+
+    rendered(folder, {constants(3)}, 1'000'000);
+    CHECK_FALSE(take::Take::load(folder).values_end_s);
+    CHECK_NOTHROW(take::Take::load(folder).require_values());
     fs::remove_all(folder);
 }
 

@@ -66,7 +66,7 @@ int render(const RenderChoice& choice) {
     if (!choice.record.empty()) {
         take = make_take(choice, choice.record, options.seconds, false);
         options.take = take.get();
-        if (!choice.record_values) options.take_values = run::TakeValues::none;
+        if (!choice.record_values) take->limit_values(take::max_first_bytes);
     }
     std::unique_ptr<FrameWriter> frames;
     if (choice.frames.frames > 0) {

@@ -61,6 +61,7 @@ struct Verdict {
     std::uint64_t compared = 0;
     std::size_t compared_hashes = 0;
     bool is_complete = false;
+    std::optional<double> values_end_s;  // by their limit
 
     bool differs() const { return first || !damages.empty() || !hashes.empty(); }
     /// A take without values has a hash of all values of each output.
@@ -87,8 +88,11 @@ void print(const Verdict& verdict, std::size_t outputs, double seconds) {
         fmt::print("cut off; {} compared, equal so far; {:.3g} s can be repeated\n", counted(verdict.compared, "value"),
                    seconds);
     else
-        fmt::print("identical: {} of {}, {:.3g} s\n", counted(verdict.compared, "value"), counted(outputs, "output"),
-                   seconds);
+        fmt::print("identical: {} of {}, {:.3g} s{}\n", counted(verdict.compared, "value"), counted(outputs, "output"),
+                   seconds,
+                   verdict.values_end_s
+                       ? fmt::format("; values up to {:.4g} s, then the hash of each output", *verdict.values_end_s)
+                       : std::string());
 }
 
 /// The summary of a run that was cut off says so, and how far the results reach.
@@ -164,7 +168,8 @@ int replay(const ReplayChoice& choice) {
                           comparison.first_difference(),
                           comparison.compared_values(),
                           take.result.size(),
-                          take.is_complete};
+                          take.is_complete,
+                          take.values_end_s};
     // With other files, or when nothing could be compared, the values may not be those of the run.
     const bool is_of_run = verdict.is_equal_so_far() && changed.empty();
     if (copy && !is_of_run)
@@ -178,6 +183,7 @@ int replay(const ReplayChoice& choice) {
         Json json{{"identical", verdict.is_identical()},
                   {"cut_off", !verdict.is_complete},
                   {"compared_values", verdict.compared},
+                  {"values_end_s", verdict.values_end_s ? Json(*verdict.values_end_s) : Json()},
                   {"first_difference", verdict.first ? difference_json(*verdict.first) : Json()},
                   {"damaged_files", Json::array()},
                   {"differing_hashes", verdict.hashes},
@@ -207,8 +213,7 @@ Action add_replay(VerbOptions& verb) {
     verb.add("-o,--out", choice->out,
              "folder for the results: sounds, traces, bones, summary.json; of a run that was cut off as far as the "
              "take reaches");
-    verb.add("--record", choice->record,
-             "write the take again into this folder, with every value: of a run with --no-values");
+    verb.add("--record", choice->record, "write the take again into this folder, with every value of the run");
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.flag("--anyway", choice->anyway, "replay even if assets have changed");
     verb.flag("--json", choice->json, "as JSON");

@@ -9,6 +9,7 @@ import pathlib
 import shutil
 import struct
 import subprocess
+import warnings
 from typing import Iterator, Mapping
 
 import numpy as np
@@ -89,6 +90,11 @@ class Take(Mapping[str, Stream]):
                 self._places.setdefault(output["port"], []).append((event, first, count, output["type"]))
                 first += count
 
+    @property
+    def values_end(self) -> float | None:
+        """Time in s from which on the run recorded no values (without `--values`); None: it recorded all."""
+        return next((event["values_end_s"] for event in self.events if "values_end_s" in event), None)
+
     def parts(self, port: str) -> list[Stream]:
         """The stretches of an output: an edit, or recording that is switched off and on, begins another file."""
         if not self._places:
@@ -101,6 +107,9 @@ class Take(Mapping[str, Stream]):
     def __getitem__(self, port: str) -> Stream:
         """All of an output. One stretch is mapped; several are copied together."""
         parts = self.parts(port)
+        if (end := self.values_end) is not None:
+            warnings.warn(f"{self.folder}: values end at {end:.4g} s, before the run; "
+                          f"'tactus replay {self.folder} --record NEW' writes all", stacklevel=2)
         if len(parts) == 1:
             return parts[0]
         return Stream(port, parts[0].type, parts[0].names, parts[0].rate, np.concatenate([p.values for p in parts]),

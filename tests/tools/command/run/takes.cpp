@@ -57,6 +57,23 @@ void flip_byte(const fs::path& path, std::int64_t from_end) {
     file.put(byte);
 }
 
+/// As a run that nobody recorded before its end.
+void drop_values(const fs::path& take) {
+    std::ifstream events(take / "events.jsonl");
+    std::string kept;
+    std::int64_t lines = 0;
+    for (std::string line; std::getline(events, line);)
+        if (!json::parse(line).contains("stream")) kept += line + "\n", ++lines;
+    std::ofstream(take / "events.jsonl") << kept;
+    json result = json::parse(slurp(take / "result.json"));
+    for (const auto& file : fs::directory_iterator(take / "streams")) {
+        result["holds"].erase("streams/" + file.path().filename().string());
+        fs::remove(file);
+    }
+    result["holds"]["events.jsonl"] = lines;
+    std::ofstream(take / "result.json") << result.dump();
+}
+
 }  // namespace
 
 TEST_CASE("a rendered take is repeated to the bit, and one whose values were changed is not") {
@@ -105,7 +122,8 @@ TEST_CASE("a take without values is repeated to the hash of each output, and rep
     const std::string take = (folder.path / "take").string(), whole = (folder.path / "whole").string();
     const std::string run = "render " + (folder.path / "touch.toml").string() + " --seconds 0.5 --out " +
                             (folder.path / "out").string() + " --record ";
-    REQUIRE(folder.tactus(run + take + " --no-values").code == 0);
+    REQUIRE(folder.tactus(run + take).code == 0);
+    drop_values(take);
     REQUIRE(folder.tactus(run + whole + " --overwrite").code == 0);
     CHECK(fs::is_empty(fs::path(take) / "streams"));
     const Outcome same = folder.tactus("replay " + take);
@@ -130,6 +148,33 @@ TEST_CASE("a take without values is repeated to the hash of each output, and rep
     CHECK(other.code == 1);
     CHECK(other.err.find("is not written, because the replay differs") != std::string::npos);
     CHECK_FALSE(fs::exists(folder.path / "other"));
+}
+
+TEST_CASE("a long take holds the first 30 MB of its values, and says where they end", "[slow]") {
+    Folder folder;
+    // 512 channels at 1 kHz.
+    std::string patch;
+    for (int n = 0; n < 512; ++n) patch += fmt::format("[nodes.n{}]\ntype = \"constant\"\nrate = \"1 kHz\"\n", n);
+    folder.write("many.toml", patch);
+    const std::string take = (folder.path / "take").string(), all = (folder.path / "all").string();
+    const std::string run = "render " + (folder.path / "many.toml").string() + " --seconds 8 --overwrite --out " +
+                            (folder.path / "out").string() + " --record ";
+    const Outcome made = folder.tactus(run + take);
+    REQUIRE(made.code == 0);
+    CHECK(made.out.find("the take holds values up to 7.324 s, 30 MB") != std::string::npos);
+    const Outcome same = folder.tactus("replay " + take);
+    CHECK(same.code == 0);
+    CHECK(same.out.find("; values up to 7.324 s, then the hash of each output") != std::string::npos);
+    const Outcome whole = folder.tactus(run + all + " --values");
+    REQUIRE(whole.code == 0);
+    CHECK(whole.out.find("the take holds values") == std::string::npos);
+    const auto size = [](const std::string& of) { return fs::file_size(fs::path(of) / "streams" / "1-kHz.wav"); };
+    CHECK(size(take) < 30'100'000);
+    CHECK(size(all) > 32'000'000);
+    const std::string again = (folder.path / "again").string();
+    REQUIRE(folder.tactus("replay " + take + " --record " + again).code == 0);
+    CHECK(size(again) == size(all));
+    CHECK(folder.tactus("replay " + again).out == folder.tactus("replay " + all).out);
 }
 
 TEST_CASE("a run that is refused leaves no take behind, and the next try may use its folder") {
