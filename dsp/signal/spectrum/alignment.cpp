@@ -19,6 +19,7 @@ using Complex = std::complex<double>;
 
 constexpr double floor_ratio = 1e-6;       // −60 dB
 constexpr double search = 5e-3;            // s around the whitened peak
+constexpr double longest_cycle = 0.05;     // s, of a machine: strokes repeat themselves less often
 constexpr double chance = 1e-3;
 // A Hann window correlates neighbouring bins: the effective number of bins is lower.
 constexpr double hann_independence = 1.0 / 1.5;
@@ -55,8 +56,10 @@ struct DelaySearch {
     double tests = 1.0;            // number of such searches; 0: the peak counts whatever its height
 };
 
-/// The delay of `output`, of which as many samples as both have are used.
-Alignment delay_between(std::span<const double> reference, std::span<const double> output, const DelaySearch& wanted) {
+/// The delay of `output`, of which as many samples as both have are used. `period` gets the distance in samples to the
+/// highest other peak of at least half the height, by which strokes repeat themselves; 0: none, or those of a machine.
+Alignment delay_between(std::span<const double> reference, std::span<const double> output, const DelaySearch& wanted,
+                        std::ptrdiff_t* period = nullptr) {
     const double rate = wanted.rate, lowest = wanted.lowest, highest = wanted.highest;
     const std::size_t common = std::min(reference.size(), output.size());
     const std::ptrdiff_t reach = wanted.reach;
@@ -100,8 +103,20 @@ Alignment delay_between(std::span<const double> reference, std::span<const doubl
     found.significant = wanted.tests == 0.0 || found.significance > std::sqrt(2.0 * std::log(2.0 * trials / chance));
     if (!found.significant) return found;
 
-    const std::vector<double> correlation = samples_of(plain);
     const auto near = static_cast<std::ptrdiff_t>(std::ceil(search * rate));
+    if (period) {
+        // The higher of the peaks from `from` to `to` samples to both sides of the coarse one; its distance.
+        const auto beside = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+            const auto clamped = [&](std::ptrdiff_t lag) { return std::clamp(lag, -reach, reach); };
+            const std::ptrdiff_t left = peak_of(whitened, clamped(coarse - to), clamped(coarse - from)),
+                                 right = peak_of(whitened, clamped(coarse + from), clamped(coarse + to));
+            const std::ptrdiff_t other = std::abs(at(whitened, left)) > std::abs(at(whitened, right)) ? left : right;
+            return std::abs(at(whitened, other)) < 0.5 * std::abs(at(whitened, coarse)) ? 0 : std::abs(other - coarse);
+        };
+        const auto slow = static_cast<std::ptrdiff_t>(std::ceil(longest_cycle * rate));
+        *period = beside(near, slow) > 0 ? 0 : beside(slow, 2 * reach);
+    }
+    const std::vector<double> correlation = samples_of(plain);
     const std::ptrdiff_t lag = peak_of(correlation, std::max(coarse - near, -reach), std::min(coarse + near, reach));
     const double left = at(correlation, lag - 1), middle = at(correlation, lag), right = at(correlation, lag + 1);
     const double bend = left - 2.0 * middle + right;
@@ -145,31 +160,56 @@ Alignment delay_of_blocks(std::span<const double> reference, std::span<const dou
     return best;
 }
 
+/// The alignment at a delay of about `lag` samples, by what both records have in common there; not significant if that is
+/// too short.
+Alignment aligned_at(std::span<const double> reference, std::span<const double> output, std::ptrdiff_t lag,
+                     DelaySearch wanted) {
+    const auto from_reference = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, -lag)),
+               from_output = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, lag));
+    if (from_reference >= reference.size() || from_output >= output.size()) return {};
+    const double shorter = static_cast<double>(std::min(reference.size(), output.size()));
+    const std::span<const double> r = reference.subspan(from_reference), d = output.subspan(from_output);
+    const std::size_t overlap = std::min(r.size(), d.size());
+    if (static_cast<double>(overlap) < std::min(shorter, std::max(min_overlap * wanted.rate, 0.25 * shorter)))
+        return {};
+    wanted.reach = static_cast<std::ptrdiff_t>(std::ceil(search * wanted.rate));
+    wanted.tests = 0.0;
+    Alignment fine = delay_between(r.first(overlap), d.first(overlap), wanted);
+    fine.delay += static_cast<double>(lag) / wanted.rate;
+    return fine;
+}
+
 }  // namespace
 
 Alignment align_takes(std::span<const double> reference, std::span<const double> output, double rate, double lowest,
                       double highest, double longest) {
+    constexpr std::ptrdiff_t max_periods = 16;
     const double shorter = static_cast<double>(std::min(reference.size(), output.size()));
     DelaySearch wanted{rate, lowest, highest,
                        static_cast<std::ptrdiff_t>(std::min(std::round(longest * rate), 0.5 * shorter))};
-    Alignment found = delay_between(reference, output, wanted);
+    std::ptrdiff_t period = 0;
+    Alignment found = delay_between(reference, output, wanted, &period);
     if (!found.significant) found = delay_of_blocks(reference, output, wanted, longest);
     if (!found.significant) found = delay_of_blocks(output, reference, wanted, longest), found.delay = -found.delay;
     if (!found.significant) return found;
-    // Again on what both have in common, by which the correlation is normalised.
-    const auto lag = static_cast<std::ptrdiff_t>(std::llround(found.delay * rate));
-    const auto from_reference = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, -lag)),
-               from_output = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, lag));
-    if (from_reference >= reference.size() || from_output >= output.size()) return {};
-    const std::span<const double> r = reference.subspan(from_reference), d = output.subspan(from_output);
-    const std::size_t overlap = std::min(r.size(), d.size());
-    if (static_cast<double>(overlap) < std::min(shorter, std::max(min_overlap * rate, 0.25 * shorter))) return {};
-    wanted.reach = static_cast<std::ptrdiff_t>(std::ceil(search * rate));
-    wanted.tests = 0.0;
-    const Alignment fine = delay_between(r.first(overlap), d.first(overlap), wanted);
-    if (!fine.significant) return found;
-    found.delay = static_cast<double>(lag) / rate + fine.delay;
+    // Again on what both have in common, by which the correlation is normalised. Of what repeats itself, with strokes of
+    // its own, the delay with the best correlation counts, not the one at which both fades meet.
+    const auto first = static_cast<std::ptrdiff_t>(std::llround(found.delay * rate));
+    const Alignment fine = aligned_at(reference, output, first, wanted);
+    if (!fine.significant) return {};
+    found.delay = fine.delay;
     found.correlation = fine.correlation;
+    // Both fades hide what differs at the ends: what a correlation lacks counts. The nearest of equal ones has the longest
+    // overlap.
+    const auto missing = [](const Alignment& one) { return std::max(1e-9, 1.0 - std::abs(one.correlation)); };
+    for (std::ptrdiff_t k = 1; k <= max_periods && period > 0; ++k)
+        for (const std::ptrdiff_t lag : {first - k * period, first + k * period}) {
+            if (std::abs(lag) > wanted.reach) continue;
+            const Alignment other = aligned_at(reference, output, lag, wanted);
+            if (!other.significant || !(missing(other) < 0.9 * missing(found))) continue;
+            found.delay = other.delay;
+            found.correlation = other.correlation;
+        }
     return found;
 }
 

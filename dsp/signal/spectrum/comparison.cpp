@@ -287,6 +287,33 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     }
 }
 
+/// Whether the aligned stretches are coherent in any third of an octave, beyond what unrelated noise shows by chance.
+bool is_coherent(const Stretch& loud, const Comparison& result) {
+    const auto lag = static_cast<std::ptrdiff_t>(std::llround(result.alignment.delay * rate));
+    const auto from = [](const std::vector<double>& all, std::ptrdiff_t first) {
+        return std::span(all).subspan(
+            std::min(all.size(), static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, first))));
+    };
+    const std::span<const double> r = from(loud.reference, -lag), d = from(loud.output, lag);
+    const std::size_t common = std::min(r.size(), d.size());
+    CrossStream<double> crossed(WelchSettings::hann(rate, middle, middle / 2));
+    crossed.push(r.first(common), d.first(common));
+    const CrossSpectra cross = crossed.spectra();
+    if (cross.segments < 4) return true;
+    const std::vector<double> coherence = cross.coherence();
+    // The coherence of unrelated noise has a mean of 1/K, and nearly that as its standard deviation.
+    const double chance = 1.0 / cross.effective_segments;
+    for (double low = result.lowest; low < result.highest; low *= std::cbrt(2.0)) {
+        double sum = 0.0, count = 0.0;
+        for (std::size_t k = 0; k < coherence.size(); ++k)
+            if (const double f = cross.frequency(k); f >= low && f < std::min(low * std::cbrt(2.0), result.highest))
+                sum += coherence[k], count += 1.0;
+        // A Hann window makes neighbouring bins dependent.
+        if (count > 0.0 && sum / count > chance * (1.0 + 6.0 * std::sqrt(2.0 / count))) return true;
+    }
+    return false;
+}
+
 template <class Sample>
 Take::Blocks blocks_of(std::span<const Sample> samples) {
     return [samples, buffer = std::vector<double>()]() mutable -> std::span<const double> {
@@ -324,6 +351,9 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     const Stretch loud = loudest_stretch(reference, output, length);
     result.alignment =
         align_takes(loud.reference, loud.output, rate, result.lowest, result.highest, options.longest_delay);
+
+    // Slow modulation that both have makes peaks of chance: what was recorded together is coherent somewhere.
+    if (result.alignment.significant && !is_coherent(loud, result)) result.alignment = {};
 
     // A take in memory is read once only.
     const auto kept = [&](const Take& take, const std::vector<double>& samples) {

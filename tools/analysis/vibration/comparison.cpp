@@ -158,10 +158,12 @@ ComparedPair compare_files(const CompareSettings& settings) {
                                       o.comparison.lowest, o.comparison.highest));
     for (const auto& [name, inside] :
          {std::pair("reference", o.comparison.reference_inside), std::pair("output", o.comparison.output_inside)})
-        if (inside > 0.0 && inside < 0.9)
+        if (inside > 0.0 && inside < 0.9) {
+            o.not_judged = std::max(o.not_judged, 1.0 - inside);
             o.notes.push_back(
                 fmt::format("{:.0f} % of the power of the {} lies outside of {:.0f} to {:.0f} Hz and is not judged",
                             100.0 * (1.0 - inside), name, o.comparison.lowest, o.comparison.highest));
+        }
     o.level_gap_db = level_gap(settings, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, settings.thresholds);
     return o;

@@ -47,6 +47,8 @@ struct ComparedPair {
     table::Thresholds thresholds;
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
     double level_gap_db = 0.0;
+    double not_judged =
+        0.0;  ///< greater fraction of the power of a take outside of the judged band; 0: at most a tenth
     bool actuator_known = false;  ///< the level gap refers to an actuator at its limits
     std::array<sound::ReadStretch, 2> stretches{};  ///< the stretches of the reference and the output that were read
     std::optional<std::pair<double, double>> plotted;  ///< as in the settings

@@ -31,8 +31,12 @@ std::vector<std::string> Verdict::failed() const {
     return names;
 }
 
+bool Verdict::is_judged() const { return failed() != std::vector<std::string>{"above_noise"}; }
+
 std::string Verdict::words() const {
     const std::string band = fmt::format("{:.0f} to {:.0f} Hz", lowest, highest);
+    if (!is_judged())
+        return fmt::format("Cannot be judged, {}: no line or band stands above the noise of both", band);
     if (!passed()) return fmt::format("Not the same vibration, {}", band);
     if (time.empty()) return fmt::format("Same mean spectrum, {}; time is not judged", band);
     return fmt::format("Same mean spectrum and {}, {}{}", time, band,

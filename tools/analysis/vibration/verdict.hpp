@@ -27,6 +27,8 @@ struct Verdict {
     double lowest = 0.0, highest = 0.0;  ///< Hz: the band that was judged
 
     bool passed() const;
+    /// False if nothing speaks against it but that no line or band stands above the noise of both.
+    bool is_judged() const;
     /// The verdict with its scope, such as "Same mean spectrum and course over time, 40 to 1000 Hz".
     std::string words() const;
     std::vector<std::string> failed() const;

@@ -260,7 +260,16 @@ display::Figure draw_comparison(const analysis::ComparedPair& pair) {
     const double curves = std::max(top + spectra + gap * 0.6 + bands + coherence + 46.0, 470.0);
     const bool pictures = pair.spectrograms.size() == 2;
     display::Figure figure(left + panel_width + right, curves + (pictures ? picture_height + 76.0 : 0.0));
-    figure.text({left, 24.0}, verdict.words(), 16.0, verdict.passed() ? pass_colour : added_colour,
+    // Green is kept for a verdict about all that the page shows.
+    const bool is_partial = verdict.passed() ? pair.not_judged > 0.0 : !verdict.is_judged();
+    figure.text({left, 24.0},
+                verdict.words() + (verdict.passed() && is_partial
+                                       ? fmt::format("; {:.0f} % of the power is not judged", 100.0 * pair.not_judged)
+                                       : ""),
+                16.0,
+                is_partial         ? ink
+                : verdict.passed() ? pass_colour
+                                   : added_colour,
                 display::TextAnchor::start, true);
     figure.line({{left, 42.0}, {left + 24.0, 42.0}}, reference_colour, 2.5);
     figure.text({left + 30.0, 46.0}, reference_name, 12.0, ink);

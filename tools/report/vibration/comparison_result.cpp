@@ -241,9 +241,16 @@ std::optional<double> if_found(double hz) { return hz > 0.0 ? std::optional(hz) 
 std::string pair_title(const Pair& p) {
     const double gain = p.comparison.gain_db;
     return fmt::format(
-        "{}: {} {} the vibration of {}{}", p.verdict.passed() ? "PASS" : "FAIL", p.output.string(),
-        p.verdict.passed() ? "has" : "does not have", p.reference.string(),
-        std::abs(gain) < 0.5 ? "" : fmt::format(", {:.1f} dB {}", std::abs(gain), gain > 0.0 ? "softer" : "louder"));
+        "{}: {} {} the vibration of {}{}{}", p.verdict.passed() ? "PASS" : "FAIL", p.output.string(),
+        p.verdict.passed()      ? "has"
+        : p.verdict.is_judged() ? "does not have"
+                                : "cannot be judged to have",
+        p.reference.string(),
+        std::abs(gain) < 0.5 ? "" : fmt::format(", {:.1f} dB {}", std::abs(gain), gain > 0.0 ? "softer" : "louder"),
+        p.not_judged > 0.0 && p.verdict.passed()
+            ? fmt::format(", from {:.0f} to {:.0f} Hz; {:.0f} % of the power is not judged", p.verdict.lowest,
+                          p.verdict.highest, 100.0 * p.not_judged)
+            : "");
 }
 
 const Fields<Pair>& pair_fields() {

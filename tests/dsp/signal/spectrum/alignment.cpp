@@ -121,6 +121,20 @@ TEST_CASE("an exact excerpt correlates fully wherever it is, and a copy that is 
     }
 }
 
+TEST_CASE("of what repeats itself the delay at which all of it agrees is found") {
+    // Strikes every 0.37 s ring by themselves; the copy begins 1.5 s late, after silence.
+    std::vector<double> strikes(48000), late(60000);
+    for (std::size_t i = 0; i < strikes.size(); ++i) {
+        const std::size_t since = i % 2960;
+        strikes[i] = std::exp(-static_cast<double>(since) / 200.0) * std::sin(0.157 * static_cast<double>(since));
+        late[i + 12000] = strikes[i];
+    }
+    const signal::Alignment found =
+        signal::align_takes(strikes, late, aligned_rate, 40.0, 1000.0, std::numeric_limits<double>::infinity());
+    CHECK(found.delay == Approx(1.5).margin(1e-4));
+    CHECK(found.correlation > 0.9999);
+}
+
 TEST_CASE("without a limit of the delay noise belongs to no other noise either") {
     int alarms = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {

@@ -50,6 +50,11 @@ TEST_CASE("without anything above the noise of both there is no pass, and scores
     signal::Comparison c = good();
     c.above_noise.in_both.clear();
     CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"above_noise"});
+    CHECK_FALSE(judge(c, 0.0, {}).is_judged());
+    CHECK(judge(c, 0.0, {}).words().starts_with("Cannot be judged, 40 to 1000 Hz"));
+    signal::Comparison other = c;
+    other.lsd_db = 20.0;
+    CHECK(judge(other, 0.0, {}).words() == "Not the same vibration, 40 to 1000 Hz");
     c.alignment.significant = true;
     c.coherence_mean = 0.9;  // what two takes of one event share is no noise
     CHECK(judge(c, 0.0, {}).passed());
