@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <span>
 #include <string_view>
@@ -55,6 +56,20 @@ ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesy
     return read;
 }
 
+/// "Gal" of "acc [Gal]": what a bracket at the end of a name holds, where it has letters.
+std::optional<std::string> bracket_of(const std::string& name) {
+    const std::size_t open = name.find_last_of("[(");
+    if (open == std::string::npos || open == 0 || (name.back() != ']' && name.back() != ')')) return std::nullopt;
+    const std::string text = name.substr(open + 1, name.size() - open - 2);
+    // "column 2" distinguishes columns of one name.
+    if (text.starts_with("column ")) return std::nullopt;
+    for (const char* const counts : {"count", "counts", "raw", "LSB", "lsb"})
+        if (text == counts) return std::nullopt;
+    return std::ranges::any_of(text, [](char c) { return std::isalpha(static_cast<unsigned char>(c)); })
+               ? std::optional(text)
+               : std::nullopt;
+}
+
 /// What the header of a log states for its columns: one calibration, and the factor of each column to its unit.
 Calibration calibration_of_columns(const table::SampleLog& log, std::vector<double>& factors) {
     factors.assign(log.names.size(), 1.0);
@@ -71,7 +86,14 @@ Calibration calibration_of_columns(const table::SampleLog& log, std::vector<doub
             log.names.front(), text(first), log.names[i], text(unit));
         return out;
     }
-    if (!first) return out;
+    if (!first) {
+        if (const auto unknown = bracket_of(log.names.front()))
+            out.remark = fmt::format(
+                "'{}' in the name '{}' is no known unit and was not used; state what a value of 1 is with "
+                "--calibration",
+                *unknown, log.names.front());
+        return out;
+    }
     out = calibration_of(*first);
     out.source = "the header";
     for (std::size_t i = 0; i < log.units.size(); ++i) factors[i] = log.units[i]->si / first->si;

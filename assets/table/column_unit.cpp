@@ -16,28 +16,41 @@ namespace {
 constexpr double gravity = 9.80665;  // m/s², standard
 
 /// Spellings that parse_unit does not know.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 32> spellings{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 38> spellings{{
     {"m/s2", "m/s^2"},   {"m/s/s", "m/s^2"},   {"ms-2", "m/s^2"},      {"m/s**2", "m/s^2"},   {"ms^-2", "m/s^2"},
     {"m s-2", "m/s^2"},  {"m s^-2", "m/s^2"},  {"m/sec^2", "m/s^2"},   {"m/sec2", "m/s^2"},   {"m/sec²", "m/s^2"},
     {"mm/s2", "mm/s^2"}, {"mm/sec", "mm/s"},   {"m/sec", "m/s"},       {"volt", "V"},         {"volts", "V"},
     {"millivolt", "mV"}, {"millivolts", "mV"}, {"sec", "s"},           {"secs", "s"},         {"second", "s"},
     {"seconds", "s"},    {"sek", "s"},         {"msec", "ms"},         {"millisecond", "ms"}, {"milliseconds", "ms"},
     {"millis", "ms"},    {"usec", "us"},       {"microseconds", "us"}, {"micros", "us"},      {"newton", "N"},
-    {"pascal", "Pa"},    {"µm/s2", "um/s^2"},
+    {"pascal", "Pa"},    {"µm/s2", "um/s^2"},  {"m·s⁻²", "m/s^2"},     {"m s⁻²", "m/s^2"},    {"m·s-2", "m/s^2"},
+    {"m.s-2", "m/s^2"},  {"m*s^-2", "m/s^2"},  {"cm/s2", "cm/s^2"},
 }};
 
-/// Standard gravity, which parse_unit takes as the gram.
-constexpr std::array<std::pair<std::string_view, double>, 11> gravities{{{"g", 1.0},
-                                                                         {"G", 1.0},
-                                                                         {"gn", 1.0},
-                                                                         {"g0", 1.0},
-                                                                         {"gs", 1.0},
-                                                                         {"g's", 1.0},
-                                                                         {"Gs", 1.0},
-                                                                         {"mg", 1e-3},
-                                                                         {"mG", 1e-3},
-                                                                         {"ug", 1e-6},
-                                                                         {"µg", 1e-6}}};
+/// Standard gravity, which parse_unit takes as the gram, and units that are not of the SI: in m/s².
+constexpr std::array<std::pair<std::string_view, double>, 23> accelerations{{{"g", gravity},
+                                                                             {"G", gravity},
+                                                                             {"gn", gravity},
+                                                                             {"g0", gravity},
+                                                                             {"gs", gravity},
+                                                                             {"g's", gravity},
+                                                                             {"Gs", gravity},
+                                                                             {"gee", gravity},
+                                                                             {"gees", gravity},
+                                                                             {"g-force", gravity},
+                                                                             {"mg", 1e-3 * gravity},
+                                                                             {"mG", 1e-3 * gravity},
+                                                                             {"milli-g", 1e-3 * gravity},
+                                                                             {"ug", 1e-6 * gravity},
+                                                                             {"µg", 1e-6 * gravity},
+                                                                             {"Gal", 1e-2},
+                                                                             {"gal", 1e-2},
+                                                                             {"in/s^2", 0.0254},
+                                                                             {"in/s2", 0.0254},
+                                                                             {"in/s²", 0.0254},
+                                                                             {"ft/s^2", 0.3048},
+                                                                             {"ft/s2", 0.3048},
+                                                                             {"ft/s²", 0.3048}}};
 
 /// Units that a header may end with after an underscore; others are rather letters of a name.
 constexpr std::array<std::string_view, 22> suffixes{"s",  "ms",  "us",   "ns",   "g",    "mg", "V",  "mV",
@@ -79,9 +92,9 @@ std::optional<ColumnUnit> parse_column_unit(std::string_view text) {
     text = bare(text);
     if (text.empty() || text.size() > 32 || text == "1" || text == "%") return std::nullopt;
     ColumnUnit unit{std::string(text), 1.0, {}};
-    for (const auto& [spelling, factor] : gravities)
+    for (const auto& [spelling, factor] : accelerations)
         if (text == spelling) {
-            unit.si = factor * gravity;
+            unit.si = factor;
             unit.dimension = parse_unit("m/s^2").dimension;
             return unit;
         }

@@ -167,6 +167,14 @@ TEST_CASE("units and names are told apart") {
     CHECK(table::parse_column_unit("Volts")->is_voltage());
     CHECK(table::parse_column_unit("m/s2")->is_acceleration());
     CHECK_FALSE(table::parse_column_unit("kg"));
+    for (const char* const text : {"m·s⁻²", "m s⁻²", "m.s-2", "m*s^-2"}) {
+        CAPTURE(text);
+        CHECK(table::parse_column_unit(text)->si == Approx(1.0));
+    }
+    CHECK(table::parse_column_unit("Gal")->si == Approx(0.01));
+    CHECK(table::parse_column_unit("in/s²")->si == Approx(0.0254));
+    CHECK(table::parse_column_unit("ft/s2")->si == Approx(0.3048));
+    CHECK(table::parse_column_unit("milli-g")->si == Approx(9.80665e-3));
     CHECK(table::axis_family("gFz") == "gf");
     CHECK(table::axis_family("Linear Acceleration y") == "linear acceleration");
     CHECK_FALSE(table::axis_family("index"));
