@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // conformance [--check PAGE | --write PAGE] [TABLE ...]: gives the file of each case to the built command, and checks
-// that it is read right, read with a note, or refused with the expected words. --check compares the tables with those of
+// that it is read right without a note, read with the expected note, or refused with the expected words. --check compares the tables with those of
 // the page, --write replaces them. Exit code 1 if a case or a table differs.
 #include "assets/file/whole_file.hpp"
 #include "tests/campaign/limited_run.hpp"
@@ -83,7 +83,7 @@ Answer answer_of(const Format& format, const Case& one, const fs::path& folder) 
 
 std::string fault_of(const Case& one, const Answer& answer) {
     if (!answer.fault.empty()) return answer.fault;
-    if (answer.result != one.result && !(one.result == Result::read && answer.result == Result::note))
+    if (answer.result != one.result)
         return fmt::format("{} in place of {}: {}", result_names[int(answer.result)], result_names[int(one.result)],
                            answer.text);
     if (one.result != Result::read && (one.words.empty() || answer.text.find(one.words) == std::string::npos))

@@ -66,6 +66,14 @@ Check is_tone(double rms = level / std::sqrt(2.0), double of_rate = rate, double
     };
 }
 
+/// A tone whose channel has a unit.
+Check is_tone_in(const Text& unit, double rms = level / std::sqrt(2.0)) {
+    return [=, right = is_tone(rms)](const Json& found) -> Text {
+        const Json& seen = found["rows"][0]["channels"][0]["unit"];
+        return seen == unit ? right(found) : "the unit is " + seen.dump();
+    };
+}
+
 constexpr double gravity = 9.80665;
 
 std::vector<Text> log_notes(const Json& found) {
@@ -82,14 +90,18 @@ std::vector<Text> log_notes(const Json& found) {
         if (value.is_number() && value.get<double>() > 0.0) notes.push_back(fmt::format("{} {}", value.dump(), what));
     };
     text(member(form, "format"));
-    text(member(form, "time"), "time: ");
+    // What a name or an option states is no note: a reason for a unit is, and a rate from another line.
+    if (const Json& time = member(form, "time"); time.is_string())
+        if (const Text stated = time.get<Text>(); stated.ends_with(")") || stated.find(", as line ") != Text::npos)
+            notes.push_back("time: " + stated);
     count(member(log, "lost_rows"), "rows left out");
     count(member(log, "repeated_rows"), "rows repeated");
     count(member(log, "gaps"), "gaps");
     count(member(form, "statistics_lines"), "lines of statistics");
     if (const Json& step = member(log, "clock_step_s"); step.is_number())
         notes.push_back(fmt::format("clock of {:g} s", step.get<double>()));
-    text(member(calibration, "from"), "scale: ");
+    if (const Json& from = member(calibration, "from"); from.is_string() && from.get<Text>() != "the header")
+        text(from, "scale: ");
     text(member(calibration, "remark"));
     return notes;
 }
@@ -123,7 +135,7 @@ std::vector<Case> shapes() {
         log_case("UTF-16, with a byte-order mark", in_utf16("time_s,ax (m/s2)\n" + rows(numbers(1.0)))),
         log_case("Latin-1", "time_s,ax (m/s\xb2)\n" + rows(numbers(1.0))),
         log_case("lines above the names", late),
-        log_case("a row of units", "time,ax\ns,g\n" + rows(numbers(1.0)), Result::read, "", {}, is_tone()),
+        log_case("a row of units", "time,ax\ns,g\n" + rows(numbers(1.0)), Result::read, "", {}, is_tone_in("g")),
         log_case("comments", "# a logger\n" + plain),
         log_case("names in capitals", "TIME (MS),AX (M/S^2)\n" + rows(numbers(1e3))),
         log_case("a separator at the end of each row",
@@ -189,13 +201,14 @@ std::vector<Case> clocks() {
     };
     const Text head = "time,ax (m/s^2)\n";
     return {
-        log_case("a named unit (`timestamp_ms`)", "timestamp_ms,ax\n" + rows(numbers(1e3)), Result::note, "in ms"),
-        log_case("a named unit (`TimeUS`)", "TimeUS,ax\n" + rows(numbers(1e6)), Result::note, "in us"),
+        log_case("a named unit (`timestamp_ms`)", "timestamp_ms,ax\n" + rows(numbers(1e3))),
+        log_case("a named unit (`TimeUS`)", "TimeUS,ax\n" + rows(numbers(1e6))),
+        log_case("a named unit (`time [ns]`)", "time [ns],ax\n" + rows(numbers(1e9, "{:.0f},{:.9g}\n"))),
         log_case("no unit, plausible in one: milliseconds", head + rows(numbers(1e3)), Result::note, "in ms"),
         log_case("no unit, plausible in one: seconds", head + rows(numbers(1.0)), Result::note, "in s"),
         log_case("no unit, whole microseconds", head + rows(numbers(1e6, "{:.0f},{:.9g}\n")), Result::note, "us"),
         log_case("no unit, plausible in two", head + rows(slow), Result::refused, "--time-unit"),
-        log_case("the same", head + rows(slow), Result::note, "ms", {"--time-unit", "ms"},
+        log_case("the same", head + rows(slow), Result::read, "", {"--time-unit", "ms"},
                  [](const Json& found) { return differs("the rate", found["rows"][0]["sample_rate_hz"], 5e4); }),
         log_case("no unit, plausible in none", "t,ax\n0,1\n1e9,2\n2e9,3\n", Result::refused, "--time-unit"),
         log_case("no unit, and a rate above the rows", "# sample rate: 1600 Hz\n" + head + rows(numbers(1e3)),
@@ -208,6 +221,9 @@ std::vector<Case> clocks() {
         log_case("seconds since 1970",
                  head + rows([](int n) { return fmt::format("{:.6f},{:.9g}\n", 1.7e9 + n / rate, value(n)); }),
                  Result::note, "dates in s"),
+        log_case("milliseconds since 1970",
+                 head + rows([](int n) { return fmt::format("{:.3f},{:.9g}\n", 1.7e12 + 1e3 * n / rate, value(n)); }),
+                 Result::note, "dates in ms"),
         log_case("microseconds since 1970", head + rows(epoch(1e6, 1.7e9)), Result::note, "dates in us"),
         log_case("nanoseconds since 1970",
                  head + rows([](int n) {
@@ -219,8 +235,7 @@ std::vector<Case> clocks() {
                                                    return fmt::format("2024-05-17T{}Z,{:.9g}\n",
                                                                       time_of_day(n / rate, "{:02}:{:02}:{:02}.{:06}"),
                                                                       value(n));
-                                               }),
-                 Result::note, "dates and times"),
+                                               })),
         log_case("times of day", head + rows([](int n) {
                                      return fmt::format("{},{:.9g}\n", time_of_day(n / rate, "{:02}:{:02}:{:02}.{:06}"),
                                                         value(n));
@@ -258,7 +273,7 @@ std::vector<Case> programs() {
                  "Samples\t800\t\nY_Unit_Label\tm/s^2\t\nX0\t0.0E+0\t\nDelta_X\t0.000625\t\n"
                  "***End_of_Header***\t\t\nX_Value\tAcceleration\tComment\n" +
                      rows([](int n) { return fmt::format("{:.6f}\t{:.8f}\n", n / rate, value(n)); }),
-                 Result::read, "", {}, is_tone()),
+                 Result::note, "agrees with the rate in line 10", {}, is_tone_in("m/s^2")),
         log_case("an oscilloscope of Rigol, with start and increment",
                  "X,CH1,Start,Increment,\nSequence,Volt,-2.500000e-01,6.250000e-04,\n" + scope_rows, Result::note,
                  "1600 Hz"),
@@ -269,15 +284,21 @@ std::vector<Case> programs() {
         log_case("a separator that the file states (`sep=;`)",
                  "sep=;\n" + with_commas("time_s,ax\n" + rows(numbers(1.0)))),
         log_case("quantity over unit (`t/s`, `a/(m/s²)`)", "t/s;a/(m/s²)\n" + with_commas(rows(numbers(1.0))),
-                 Result::note, "scale"),
+                 Result::read, "", {}, is_tone_in("m/s²")),
         log_case("units behind the word `Unit`", "Name,Time,Acc X\nUnit,s,m/s²\n" + rows([](int n) {
                                                      return fmt::format(",{},{}\n", n / rate, value(n));
                                                  }),
-                 Result::note, "scale"),
+                 Result::read, "", {}, is_tone_in("m/s²")),
         log_case("accelerations in g", "time_s,ax (g)\n" + rows([](int n) {
                                            return fmt::format("{},{:.9f}\n", n / rate, value(n) / gravity);
                                        }),
-                 Result::note, "scale", {}, is_tone(level / std::sqrt(2.0) / gravity)),
+                 Result::read, "", {}, is_tone_in("g", level / std::sqrt(2.0) / gravity)),
+        log_case("accelerations in Gal", "time_s,ax [Gal]\n" + rows([](int n) {
+                                             return fmt::format("{},{:.7f}\n", n / rate, 100.0 * value(n));
+                                         }),
+                 Result::read, "", {}, is_tone_in("Gal", 100.0 * level / std::sqrt(2.0))),
+        log_case("a unit that is not known", "time_s,ax [furlong]\n" + rows(numbers(1.0)), Result::note,
+                 "'furlong' in the name 'ax [furlong]' is no known unit"),
     };
 }
 

@@ -36,11 +36,13 @@ std::string is_tone(const Json& found) {
     return differs("the rms", row["channels"][0]["rms"], level / std::sqrt(2.0), 2e-3);
 }
 
+/// What was left out, and a rate that a variable states; not what is stated of each file.
 std::vector<Bytes> notes_of(const Json& found) {
     std::vector<Bytes> notes;
     const Json& form = found["rows"][0]["log"]["form"];
-    for (const char* const key : {"format", "time"})
-        if (form.contains(key) && form[key].is_string()) notes.push_back(form[key].get<Bytes>());
+    for (const auto& [key, sign] : {std::pair{"format", "left out"}, std::pair{"time", "as variable"}})
+        if (form.contains(key) && form[key].is_string())
+            if (Bytes text = form[key].get<Bytes>(); text.find(sign) != Bytes::npos) notes.push_back(std::move(text));
     return notes;
 }
 
@@ -120,8 +122,8 @@ Format matlab() {
                 {"a matrix of two channels",
                  "a.mat",
                  variables(matlab_numbers("data", sample_count, 2, two) + fs),
-                 Result::read,
-                 "",
+                 Result::note,
+                 "as variable 'fs' states",
                  {"--column", "data_1"}},
                 {"fields of a structure", "a.mat", variables(structure)},
                 {"characters beside them", "a.mat", variables(t + ax + text), Result::note, "left out"},

@@ -321,7 +321,8 @@ Format dicom() {
         {"private elements of unknown kind and undefined length (CP-246)", "ct", all_slices(with_unknown_sequence)},
         {"zeros behind the last element", "ct", all_slices([](Bytes bytes) { return bytes + Bytes(64, '\0'); })},
         {"pixel spacing as unlimited text (UT)", "ct", all_slices(with_spacing_as_text)},
-        {"inverted display (MONOCHROME1)", "ct", slices([](int, Bytes b) { return b; }, inverted)},
+        {"inverted display (MONOCHROME1)", "ct", slices([](int, Bytes b) { return b; }, inverted), Result::note,
+         "only the display is inverted"},
         {"numbers with decimal commas", "ct", all_slices(commas), Result::note, "decimal commas"},
         {"text where a number belongs", "ct", all_slices(value(0x28, 0x30, "2.5x\\2.5")), Result::refused,
          "(0028,0030)"},
@@ -736,8 +737,8 @@ Format invesalius() {
             {{"a project (`.inv3`)",
               "ct.inv3",
               bytes(gzipped(inv3_tar(block()))),
-              Result::read,
-              "",
+              Result::note,
+              "no patient position",
               {},
               [](const Json& found) { return differs("the highest value", found["range"][1], 1500.0); }},
              {"cut short", "ct.inv3", bytes([] {
@@ -794,6 +795,9 @@ Format unread_scans() {
 Table scan_table() {
     Table table{"scans", {dicom(), nrrd(), nifti(), invesalius(), bone_file(), unread_scans()}};
     for (Format& format : table.formats) format.notes = [](const Json& found) { return strings_of(found["notes"]); };
+    // Those of a bone file are how it was made, not how it was read.
+    for (Format& format : table.formats)
+        if (format.name == "bone file") format.notes = [](const Json&) { return std::vector<std::string>{}; };
     return table;
 }
 
