@@ -145,7 +145,8 @@ std::string doubt_of(const fit::KerfEstimate& kerf) {
     if (kerf.is_open)
         return fmt::format(
             "unsure: the cortex beyond the faces does not exclude that bone is lost between them ({:.1f} ± {:.1f} mm): "
-            "say how much with --kerf, or --kerf 0 if none is",
+            "say how much with --kerf, or --kerf 0 if none is, or put it there with 'tactus plan snap --uncertain' and "
+            "settle it with 'tactus plan accept'",
             kerf.kerf * 1e3, kerf.spread * 1e3);
     if (!kerf.is_contradicted)
         return said + "; across rough faces so wide a gap is not known to 0.5 mm: place it by hand";

@@ -108,6 +108,19 @@ void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& ar
     }
 }
 
+namespace {
+
+/// The place is right but for bone that may be lost across the faces, which the contour does not exclude: the error
+/// bound includes the largest such loss (95 %).
+void leave_open(fit::FragmentMatch& match, const fit::ContourOpening& contour) {
+    const double open = std::max(0.0, -contour.excess) + 2.0 * contour.spread;
+    match.verdict = fit::FitVerdict::uncertain;
+    match.bound.face = std::hypot(match.bound.face, open);
+    match.bound.far = std::hypot(match.bound.far, open);
+}
+
+}  // namespace
+
 PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement,
                                const std::vector<char>& counts, const fit::CommonOpening& case_opening) const {
     PlanMatch found;
@@ -126,7 +139,8 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
         found.kerf = estimate_kerf(found, arrangement);
         if (found.kerf && !found.kerf->told && case_opening.excludes_kerf(found.kerf->contour))
             found.kerf->is_contradicted = found.kerf->is_open = false;
-        if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
+        if (found.kerf && found.kerf->is_open) leave_open(found.match, found.kerf->contour);
+        else if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
     }
     if (has_place()) {
         look_for_overlap(found, arrangement, counts);
