@@ -2,6 +2,7 @@
 #include "assets/bone/import.hpp"
 
 #include "assets/bone/import_steps.hpp"
+#include "assets/bone/mesh_part.hpp"
 #include "dsp/core/stop.hpp"
 
 #include <utility>
@@ -72,6 +73,21 @@ Bone import_bone(const ImportOptions& given, const ImportProgress& progress, Imp
     }
     if (summary) *summary = found;
     report(1.0, "done");
+    return bone;
+}
+
+Bone shape_of_mesh(const std::filesystem::path& path, const std::optional<std::string>& unit, const RunJobs& run) {
+    ImportOptions given;
+    given.input = path;
+    given.unit = unit;
+    given.run = run;
+    check_options(given);
+    const ImportOptions options = may_stop(given);
+    ImportSummary found;
+    const ImportProgress unseen;
+    Bone bone = import_mesh_shape(options, ImportReport{unseen}, found);
+    check_shape(bone, found);
+    describe(bone, options, found);
     return bone;
 }
 

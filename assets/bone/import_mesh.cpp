@@ -211,7 +211,7 @@ volume::Grid layout_of(const mesh::Mesh& mesh, const std::optional<double>& spac
 
 }  // namespace
 
-Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
+Bone import_mesh_shape(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
     if (!options.crop.empty()) throw Error("--crop is for CT volumes; cut the mesh in a mesh editor");
     report(0.0, "reading");
     const ReadMesh read = read_mesh(options, summary);
@@ -220,10 +220,6 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     report(0.3, "distance");
     Bone bone;
     bone.distance = volume::signed_distance(layout, read.mesh, options.run);
-    bone.density = assumed_density(bone.distance);
-    if (options.mesh_density)
-        for (std::size_t n = 0; n < bone.density.values.size(); ++n)
-            bone.density.values[n] = bone.distance.values[n] > 0.0f ? 0.0f : static_cast<float>(*options.mesh_density);
     summary.hu = "none";
     bone.provenance["calibration"] = options.mesh_density
                                          ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
@@ -231,6 +227,15 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     bone.provenance["file_frame"] =
         fmt::format("{}{}", volume::name_of(read.origin.frame), read.origin.frame_stated ? "" : " (assumed)");
     bone.provenance["unit"] = fmt::format("{} m{}", read.unit.metres, read.unit.from);
+    return bone;
+}
+
+Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
+    Bone bone = import_mesh_shape(options, report, summary);
+    bone.density = assumed_density(bone.distance);
+    if (options.mesh_density)
+        for (std::size_t n = 0; n < bone.density.values.size(); ++n)
+            bone.density.values[n] = bone.distance.values[n] > 0.0f ? 0.0f : static_cast<float>(*options.mesh_density);
     return bone;
 }
 

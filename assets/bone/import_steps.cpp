@@ -101,9 +101,15 @@ void note_metal(std::size_t samples, const Vec3& spacing, ImportSummary& summary
 
 }  // namespace
 
-void measure(const Bone& bone, ImportSummary& summary) {
-    const geometry::TriangleSurface surface = geometry::iso_surface(bone.distance, 0.0f, false);
+void check_shape(const Bone& bone, ImportSummary& summary) {
     summary.frame = "LPS";
+    if (std::ranges::none_of(bone.distance.values, [](float distance) { return distance < 0.0f; }))
+        throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+}
+
+void measure(const Bone& bone, ImportSummary& summary) {
+    check_shape(bone, summary);
+    const geometry::TriangleSurface surface = geometry::iso_surface(bone.distance, 0.0f, false);
     summary.size = bone.distance.size;
     for (int axis = 0; axis < 3; ++axis)
         summary.voxel_mm[static_cast<std::size_t>(axis)] = bone.distance.spacing[axis] / mm;
@@ -125,7 +131,6 @@ void measure(const Bone& bone, ImportSummary& summary) {
         ++inside;
     }
     note_metal(metal, bone.distance.spacing, summary);
-    if (inside + metal == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
     if (inside == 0) low = high = max_bone_density, sum = high * static_cast<double>(inside = metal);
     summary.density.min = low;
     summary.density.max = high;

@@ -31,6 +31,8 @@ struct SparseImport {
 /// Distance and density from a CT or a closed mesh; name and measurements are still missing.
 SparseImport import_ct(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
 Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
+/// The same without the density.
+Bone import_mesh_shape(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
 
 /// Throws Error for options that are invalid for every file.
 void check_options(const ImportOptions& options);
@@ -57,6 +59,9 @@ void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const Imp
 /// Sets frame, size, volume, area and densities. Throws Error for a bone without a sample inside.
 void measure(const Bone& bone, ImportSummary& summary);
 void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run);
+
+/// Sets the frame. Throws Error for a bone without a sample inside.
+void check_shape(const Bone& bone, ImportSummary& summary);
 
 /// Samples the surface points if the options request them.
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary);

@@ -25,4 +25,8 @@ struct MeshPart {
 /// be slightly larger beyond a few millimetres from the surface. Throws Error as import_bone.
 volume::Grid distance_of_mesh(const MeshPart& part);
 
+/// The bone that import_bone makes of a whole closed mesh with default options, without its density and measurements.
+/// Throws Error as import_bone.
+Bone shape_of_mesh(const std::filesystem::path& path, const std::optional<std::string>& unit, const RunJobs& run);
+
 }  // namespace tactus::bone

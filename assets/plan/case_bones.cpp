@@ -91,8 +91,9 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
         }
     } catch (const Error& error) {
         const bool is_bone = file::extension_of(bone::file_of_bone(fragment.file)) == ".vdb";
-        throw Error(fmt::format("fragment '{}': {}{}", fragment.name, error.what(),
-                                is_bone ? "" : "; or convert it with 'tactus import' and use the .vdb"));
+        throw Error(fmt::format(
+            "fragment '{}': {}{}", fragment.name, error.what(),
+            is_bone ? "" : "; convert it with 'tactus import', which has options for that, and use the .vdb"));
     }
     return loaded;
 }

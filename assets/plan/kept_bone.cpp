@@ -2,7 +2,7 @@
 #include "assets/plan/kept_bone.hpp"
 
 #include "assets/bone/assumed_density.hpp"
-#include "assets/bone/import.hpp"
+#include "assets/bone/mesh_part.hpp"
 #include "assets/file/cache.hpp"
 #include "assets/plan/kept_result.hpp"
 #include "dsp/core/hash.hpp"
@@ -143,18 +143,13 @@ std::filesystem::path file_of_kept_bone(const std::filesystem::path& path, const
 bone::Bone bone_of_mesh(const std::filesystem::path& path, const std::optional<std::string>& unit, Contents contents,
                         const RunJobs& run) {
     const ResultKey key = key_of_bone(path, unit);
-    if (auto found = kept_bone(key)) {
-        if (contents == Contents::all) found->density = bone::assumed_density(found->distance);
-        return *std::move(found);
+    std::optional<bone::Bone> bone = kept_bone(key);
+    if (!bone) {
+        bone = bone::shape_of_mesh(path, unit, run);
+        keep_bone(key, *bone);
     }
-    bone::ImportOptions options;
-    options.input = path;
-    options.run = run;
-    options.unit = unit;
-    bone::Bone bone = bone::import_bone(options);
-    if (contents == Contents::surface) bone.density = {};
-    keep_bone(key, bone);
-    return bone;
+    if (contents == Contents::all) bone->density = bone::assumed_density(bone->distance);
+    return *std::move(bone);
 }
 
 }  // namespace tactus::plan

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/sample_surface.hpp"
 
+#include "dsp/contact/field_sample.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/stop.hpp"
@@ -197,15 +198,15 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
 }
 
 /// The smoothed gradient, where it is reliable.
-Vec3 normal_in(const Voxmap& map, const Vec3& position, const Vec3& otherwise) {
-    const Vec3 out = map.smooth_sample(position).gradient;
+Vec3 normal_in(const volume::Grid& distance, const Vec3& position, const Vec3& otherwise) {
+    const Vec3 out = smooth_sample_field(distance, position).gradient;
     const double steep = glm::length(out);
     return steep > 0.5 ? out / steep : otherwise;
 }
 
-/// With a map, curvature comes from its normals: those of the triangles follow the noise of the samples.
+/// With a field, curvature comes from its normals: those of the triangles follow the noise of the samples.
 std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling,
-                                 const Voxmap* map) {
+                                 const volume::Grid* distance) {
     if (!(sampling.spacing > 0.0) || !std::isfinite(sampling.spacing))
         throw Error("the spacing of a pointshell must be positive");
     double area = 0.0;
@@ -220,9 +221,9 @@ std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const
     Candidates all = scatter(surface, area, per_area, sampling);
     all.radius.assign(all.position.size(), min_distance * sampling.spacing);
     if (sampling.follow_curvature) {
-        if (map)
+        if (distance)
             for (std::size_t i = 0; i < all.position.size(); ++i)
-                all.normal[i] = normal_in(*map, all.position[i], all.normal[i]);
+                all.normal[i] = normal_in(*distance, all.position[i], all.normal[i]);
         follow_curvature(all, sampling);
     }
     return thin_out(all, sampling);
@@ -237,11 +238,10 @@ std::vector<SurfacePoint> sample_surface(const geometry::TriangleSurface& surfac
 std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const SurfaceSampling& sampling) {
     const geometry::TriangleSurface surface = geometry::iso_surface(distance, 0.0f, /*inside_above=*/false);
     if (surface.triangles.empty()) return spread(surface, sampling, nullptr);
-    const Voxmap map = make_voxmap(distance);
-    std::vector<SurfacePoint> points = spread(surface, sampling, &map);
+    std::vector<SurfacePoint> points = spread(surface, sampling, &distance);
     for (SurfacePoint& point : points) {
         for (int step = 0; step < 3; ++step) {
-            const volume::Sample here = map.sample(point.position);
+            const volume::Sample here = sample_field(distance, point.position);
             const double steep2 = glm::dot(here.gradient, here.gradient);
             if (!here.inside || steep2 < 0.25) break;
             const Vec3 move = here.gradient * (here.value / steep2);
@@ -249,7 +249,7 @@ std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const Sur
             if (glm::length(move) > 0.5 * glm::length(distance.spacing)) break;
             point.position -= move;
         }
-        point.normal = normal_in(map, point.position, point.normal);
+        point.normal = normal_in(distance, point.position, point.normal);
     }
     return points;
 }

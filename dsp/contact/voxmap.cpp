@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/voxmap.hpp"
 
+#include "dsp/contact/field_sample.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/large_pages.hpp"
 #include "dsp/core/stop.hpp"
@@ -108,22 +109,34 @@ Voxmap make_voxmap(const volume::BoneSnapshot& bone) {
     return map;
 }
 
-volume::Sample Voxmap::sample(const Vec3& position) const noexcept {
-    const volume::GridCell cell = volume::find_grid_cell(grid.origin, grid.spacing, grid.size, position);
-    if (!cell.inside) return {far, Vec3(0.0), false};
-    const auto row = static_cast<std::size_t>(grid.size[0]), plane = row * static_cast<std::size_t>(grid.size[1]);
+volume::Sample sample_field(const volume::Grid& distance, const Vec3& position) noexcept {
+    const volume::GridCell cell = volume::find_grid_cell(distance.origin, distance.spacing, distance.size, position);
+    if (!cell.inside) return {0.0, Vec3(0.0), false};
+    const auto row = static_cast<std::size_t>(distance.size[0]),
+               plane = row * static_cast<std::size_t>(distance.size[1]);
     const volume::Interpolated at =
-        volume::Trilinear(&grid.values[grid.index(cell.i, cell.j, cell.k)], row, plane)(cell);
-    return {at.value, at.slope / grid.spacing, true};
+        volume::Trilinear(&distance.values[distance.index(cell.i, cell.j, cell.k)], row, plane)(cell);
+    return {at.value, at.slope / distance.spacing, true};
+}
+
+volume::Sample smooth_sample_field(const volume::Grid& distance, const Vec3& position) noexcept {
+    if (!volume::find_grid_cell(distance.origin, distance.spacing, distance.size, position).inside)
+        return {0.0, Vec3(0.0), false};
+    const volume::QuadraticSpline spline(distance.origin, distance.spacing, distance.size, position);
+    const volume::Interpolated at = spline([&](int i, int j, int k) {
+        return static_cast<double>(distance.at(spline.index[0][i], spline.index[1][j], spline.index[2][k]));
+    });
+    return {at.value, at.slope / distance.spacing, true};
+}
+
+volume::Sample Voxmap::sample(const Vec3& position) const noexcept {
+    const volume::Sample found = sample_field(grid, position);
+    return found.inside ? found : volume::Sample{far, Vec3(0.0), false};
 }
 
 volume::Sample Voxmap::smooth_sample(const Vec3& position) const noexcept {
-    if (!volume::find_grid_cell(grid.origin, grid.spacing, grid.size, position).inside) return {far, Vec3(0.0), false};
-    const volume::QuadraticSpline spline(grid.origin, grid.spacing, grid.size, position);
-    const volume::Interpolated at = spline([&](int i, int j, int k) {
-        return static_cast<double>(grid.at(spline.index[0][i], spline.index[1][j], spline.index[2][k]));
-    });
-    return {at.value, at.slope / grid.spacing, true};
+    const volume::Sample found = smooth_sample_field(grid, position);
+    return found.inside ? found : volume::Sample{far, Vec3(0.0), false};
 }
 
 double Voxmap::min_within(const Vec3& position, double radius) const noexcept {

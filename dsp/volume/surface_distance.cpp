@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace tactus::volume {
 
@@ -176,8 +177,8 @@ int side(double ay, double az, double by, double bz) {
     return 0;
 }
 
-// Marks the sample in row (j, k) from which on a triangle has been crossed along x.
-void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, std::vector<std::int16_t>& crossings) {
+// Marks the sample in row (j, k) of a layer from which on a triangle has been crossed along x.
+void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, std::span<std::int16_t> crossings) {
     const Vec3 ray = layout.position(0, j, k);
     std::array<double, 3> y{}, z{};
     for (std::size_t c = 0; c < 3; ++c) y[c] = corner[c].y - ray.y, z[c] = corner[c].z - ray.z;
@@ -191,16 +192,35 @@ void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, 
     const double first = std::ceil((x - layout.origin.x) / layout.spacing.x);
     if (first >= layout.size[0]) return;
     // Entering through a triangle that faces -x (negative area in y, z) counts +1.
-    std::int16_t& count = crossings[layout.index(first < 0.0 ? 0 : static_cast<int>(first), j, k)];
+    std::int16_t& count = crossings[layout.index(first < 0.0 ? 0 : static_cast<int>(first), j, 0)];
     count = static_cast<std::int16_t>(count - s0);
 }
 
-void turn_inside(Grid& distance, const geometry::TriangleSurface& surface, const RunJobs& run) {
-    const auto winding = winding_numbers(distance, surface, run);
-    for (std::size_t n = 0; n < winding.size(); ++n) {
-        if (n % (1 << 20) == 0) leave_if_stopped();
-        if (winding[n] != 0) distance.values[n] = -distance.values[n];
+// Winding numbers of layer k; they are 0 before.
+void wind(const Grid& layout, const geometry::TriangleSurface& surface, const TriangleLayers& near, int k,
+          std::span<std::int16_t> winding) {
+    for (const std::int32_t triangle : near[k]) {
+        const auto corners = corners_of(surface, triangle);
+        const IndexBox box = samples_near(layout, corners, 0.5 * layout.spacing.y);
+        for (int j = box.low[1]; j <= box.high[1]; ++j) cross(layout, corners, j, k, winding);
     }
+    for (int j = 0; j < layout.size[1]; ++j)
+        for (int i = 1; i < layout.size[0]; ++i) {
+            std::int16_t& here = winding[layout.index(i, j, 0)];
+            here = static_cast<std::int16_t>(here + winding[layout.index(i - 1, j, 0)]);
+        }
+}
+
+void turn_inside(Grid& distance, const geometry::TriangleSurface& surface, const RunJobs& run) {
+    const TriangleLayers near(distance, surface, 0.5 * widest_of(distance));
+    const std::size_t layer = distance.index(0, 0, 1);
+    run(distance.size[2], [&](int k) {
+        std::vector<std::int16_t> winding(layer, 0);
+        wind(distance, surface, near, k, winding);
+        float* const values = &distance.values[distance.index(0, 0, k)];
+        for (std::size_t n = 0; n < layer; ++n)
+            if (winding[n] != 0) values[n] = -values[n];
+    });
 }
 
 }  // namespace
@@ -236,21 +256,12 @@ std::vector<float> surface_distance(const Grid& layout, const geometry::Triangle
 
 std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::TriangleSurface& surface,
                                           const RunJobs& run) {
-    std::vector<std::int16_t> crossings = large_vector(layout.count(), std::int16_t{0});
+    std::vector<std::int16_t> winding = large_vector(layout.count(), std::int16_t{0});
     const TriangleLayers near(layout, surface, 0.5 * widest_of(layout));
     run(layout.size[2], [&](int k) {
-        for (const std::int32_t triangle : near[k]) {
-            const auto corners = corners_of(surface, triangle);
-            const IndexBox box = samples_near(layout, corners, 0.5 * layout.spacing.y);
-            for (int j = box.low[1]; j <= box.high[1]; ++j) cross(layout, corners, j, k, crossings);
-        }
-        for (int j = 0; j < layout.size[1]; ++j)
-            for (int i = 1; i < layout.size[0]; ++i) {
-                std::int16_t& here = crossings[layout.index(i, j, k)];
-                here = static_cast<std::int16_t>(here + crossings[layout.index(i - 1, j, k)]);
-            }
+        wind(layout, surface, near, k, std::span(winding).subspan(layout.index(0, 0, k), layout.index(0, 0, 1)));
     });
-    return crossings;
+    return winding;
 }
 
 Grid signed_distance(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run) {
