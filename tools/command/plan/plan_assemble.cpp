@@ -69,6 +69,7 @@ int assemble(const PlanChoice& choice) {
     for (const analysis::PlanOverlap& o : made.overlaps) result.problems.push_back(analysis::overlap_words(plan, o));
     result.left_out = report::areas_left_out(plan, matching, state.arrangement);
     result.assemblies = analysis::assembly_names(plan, state);
+    result.connections = analysis::connection_words(plan, state);
     result.is_done = analysis::is_in_one_part(state) && result.problems.empty();
     // All steps are written at once: a command that is stopped leaves the plan as it was.
     if (!made.placed.empty()) plan::save_case_plan(plan, choice.plan);

@@ -29,12 +29,12 @@ std::filesystem::path page_of(const std::filesystem::path& plan) {
 int report(const PlanChoice& choice) {
     ResultChoice files = choice.result;
     if (files.out.empty()) files.out.push_back(page_of(choice.plan));
-    check_result_files(files);
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<std::filesystem::path> sources = plan::files_of(plan, folder);
     sources.push_back(choice.plan);
     file::check_outputs(sources, files.out);
+    check_result_files(files);
     Progress progress(files.quiet);
     const report::ShownPlan shown = report::ShownPlan::reported(
         plan, folder, [&progress](double done, std::string_view doing) { progress.show(done, doing); });

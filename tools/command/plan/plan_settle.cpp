@@ -63,6 +63,7 @@ int settle(const SettleChoice& choice) {
             if (!plan::state_of(plan).holds(n)) settle_one(n);
     const plan::PlanState state = plan::state_of(plan);
     result.assemblies = analysis::assembly_names(plan, state);
+    result.connections = analysis::connection_words(plan, state);
     write_result(report::settled_fields().of(result), choice.result);
     return all_fit && analysis::is_in_one_part(state) ? done : answer_is_no;
 }

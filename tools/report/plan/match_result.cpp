@@ -173,7 +173,8 @@ const Fields<SettledFragments>& settled_fields() {
     static const Fields<S> all = Fields<S>("fits of fragments, each against all its neighbours")
                                      .rows("rows", "fits", match_fields(), &S::rows)
                                      .notes("", "note", [](const S& s) { return notes_of(s.rows); })
-                                     .groups("assemblies", "connected", &S::assemblies);
+                                     .notes("", "connections", &S::connections)
+                                     .groups("assemblies", "", &S::assemblies);
     return all;
 }
 
@@ -193,7 +194,8 @@ const Fields<AssembledFragments>& assembled_fields() {
                                      .rows("residuals", "residuals", residual_fields(), &A::residuals)
                                      .numbers("as_scanned_mm2", [](const A& a) { return in_mm2(a.left_out); })
                                      .notes("", "left out", [](const A& a) { return left_out_notes(a.left_out); })
-                                     .groups("assemblies", "connected", &A::assemblies);
+                                     .notes("", "connections", &A::connections)
+                                     .groups("assemblies", "", &A::assemblies);
     return all;
 }
 

@@ -44,6 +44,7 @@ const Fields<SnappedFragment>& snapped_fields();
 struct SettledFragments {
     std::vector<JudgedMatch> rows;
     std::vector<std::vector<std::string>> assemblies;
+    std::vector<std::string> connections;  ///< analysis::connection_words
 };
 const Fields<SettledFragments>& settled_fields();
 
@@ -54,6 +55,7 @@ struct AssembledFragments {
     std::vector<std::pair<std::string, analysis::FragmentResidual>> residuals;
     std::vector<std::pair<std::string, double>> left_out;
     std::vector<std::vector<std::string>> assemblies;
+    std::vector<std::string> connections;  ///< analysis::connection_words
     std::vector<std::string> problems;
 };
 const Fields<AssembledFragments>& assembled_fields();

@@ -222,7 +222,7 @@ TEST_CASE("a healthy side that does not lie on the fragment leaves the plan as i
         const Outcome refused = folder.tactus(call);
         INFO(wrong << ": " << refused.out << refused.err);
         CHECK(refused.code == 1);
-        CHECK(fit_says(refused.out, "! the mirrored side lies more than 2 mm away from half of 'bar'"));
+        CHECK(fit_says(refused.out, "problem: the mirrored side lies more than 2 mm away from half of 'bar'"));
         CHECK(fit_says(refused.out, "the plan is unchanged"));
         CHECK(json::parse(folder.tactus(call + " --json").out)["others"].empty());
         CHECK(slurp(plan) == before);
