@@ -5,6 +5,8 @@
 #include "dsp/psychophysics/fit.hpp"
 #include "dsp/psychophysics/quest_plus.hpp"
 #include "dsp/psychophysics/staircase.hpp"
+#include "dsp/statistics/carry_over.hpp"
+#include "dsp/statistics/orders.hpp"
 #include "dsp/statistics/paired.hpp"
 #include "tools/bench/bench.hpp"
 
@@ -14,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -24,7 +27,7 @@ namespace {
 using file::Json;
 
 struct ExperimentsChoice {
-    int studies = 10'000, observers = 400, subjects = 16;
+    int studies = 10'000, observers = 400, subjects = 16, intervals = 100;
     bool json = false;
 };
 
@@ -43,11 +46,28 @@ std::vector<double> study_of(int subjects, double mean, std::uint64_t study, std
     return differences;
 }
 
+/// A co-location study with this effect of the mode, and no carry-over.
+statistics::CarryOver co_location_carry_over(int subjects, double effect, std::uint64_t study) {
+    const Random random{mix(study) ^ mix(991)};
+    std::vector<statistics::PeriodValue> values;
+    for (int s = 0; s < subjects; ++s) {
+        const auto subject = static_cast<std::size_t>(s);
+        const auto periods = statistics::co_location_row(subject).periods();
+        for (std::size_t period = 0; period < periods.size(); ++period) {
+            const auto [display, mode] = periods[period];
+            const double carried = period == 0 ? 0.0 : periods[period - 1][1] == 1 ? 0.5 : -0.5;
+            values.push_back({subject, period, 2 * display + mode,
+                              effect * static_cast<double>(mode) + random.normal(4 * subject + period), carried});
+        }
+    }
+    return statistics::carry_over(values, {-0.5, 0.5, -0.5, 0.5});
+}
+
 std::vector<Rate> error_rates(const ExperimentsChoice& choice) {
     constexpr std::size_t family = 4;
     constexpr double margin = 0.9, effect = 0.6;
     int t = 0, permutation = 0, holm = 0, equivalence = 0, both = 0, crossed = 0, period = 0, covered = 0,
-        cross_covered = 0, equivalent = 0;
+        cross_covered = 0, equivalent = 0, carried = 0, carry_effect = 0, carry_covered = 0;
     std::vector<bool> b_second;
     for (int i = 0; i < choice.subjects; ++i) b_second.push_back(i % 2 == 0);
     for (int s = 0; s < choice.studies; ++s) {
@@ -75,6 +95,10 @@ std::vector<Rate> error_rates(const ExperimentsChoice& choice) {
         const std::vector<double> real = study_of(choice.subjects, effect, study, 20);
         const statistics::PairedTest test = statistics::paired_t(real);
         covered += test.low <= effect && effect <= test.high ? 1 : 0;
+        const statistics::CarryOver carry = co_location_carry_over(std::max(8, choice.subjects), effect, study);
+        carried += carry.carried_p < 0.05 ? 1 : 0;
+        carry_covered += carry.low <= effect && effect <= carry.high ? 1 : 0;
+        carry_effect += co_location_carry_over(std::max(8, choice.subjects), 0.0, study).p < 0.05 ? 1 : 0;
         const statistics::CrossOver adjusted = statistics::cross_over(real, b_second);
         cross_covered += adjusted.low <= effect && effect <= adjusted.high ? 1 : 0;
     }
@@ -90,6 +114,9 @@ std::vector<Rate> error_rates(const ExperimentsChoice& choice) {
             {"equivalence at the margin (known)", percent(both), 0.0, 5.7},
             {fmt::format("equivalence shown without effect ({:.1f} % computed)", power), percent(equivalent),
              power - 1.0, power + 1.0},
+            {"carry-over, none: positives", percent(carried), 4.3, 5.7},
+            {"effect adjusted for carry-over, none: positives", percent(carry_effect), 4.3, 5.7},
+            {"the same, 0.6 sd: intervals of 95 % that cover", percent(carry_covered), 94.3, 95.7},
             {"paired t, 0.6 sd: intervals of 95 % that cover", percent(covered), 94.3, 95.7},
             {"cross-over, 0.6 sd: intervals of 95 % that cover", percent(cross_covered), 94.3, 95.7}};
 }
@@ -152,6 +179,68 @@ MethodErrors adaptive_errors(int observers) {
     return errors;
 }
 
+/// How often the bootstrap interval of 95 % covers the threshold, percent, and the most processor time in which QUEST+ chose
+/// the next level, s.
+struct Covered {
+    double constant = 0.0, quest = 0.0, stairs = 0.0;
+    double next_level = 0.0;
+};
+
+/// Of this thread: other programs do not count.
+double processor_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Covered covered_thresholds(int observers) {
+    Covered covered;
+    psychophysics::FitSettings settings;
+    settings.lapse = 0.02;
+    psychophysics::StaircaseRule rule;
+    rule.start = 0.8;
+    rule.min = -1.5;
+    rule.max = 1.5;
+    rule.step_up = rule.step_down = 0.05;
+    rule.reversals = 1000;
+    constexpr int trials = 120;
+    rule.max_trials = trials;
+    for (int o = 0; o < observers; ++o) {
+        const auto seed = static_cast<std::uint64_t>(o);
+        const psychophysics::Psychometric truth{psychophysics::Form::weibull, -0.5 + Random{mix(seed + 9)}.uniform(0),
+                                                3.0, 0.5, 0.02};
+        const double p = rule.target(), wanted = truth.level_of(p);
+        const auto covers = [&](auto&& level_of, auto&& answer, std::uint64_t stream) {
+            const Random random{mix(seed) ^ mix(stream)};
+            std::vector<double> levels;
+            std::vector<bool> correct;
+            for (int trial = 0; trial < trials; ++trial) {
+                levels.push_back(level_of(trial));
+                correct.push_back(random.uniform(static_cast<std::uint64_t>(trial)) < truth.at(levels.back()));
+                answer(levels.back(), correct.back());
+            }
+            const auto counts = psychophysics::count_levels(levels, correct);
+            const auto fit = psychophysics::fit_psychometric(counts, settings);
+            const auto interval = psychophysics::bootstrap_fit(counts, settings, fit, p, 199, 0.95, seed).threshold;
+            return interval.low <= wanted && wanted <= interval.high ? 100.0 / observers : 0.0;
+        };
+        psychophysics::QuestPlus quest(wide_prior());
+        covered.quest += covers([&](int) { return quest.level(); },
+                                [&](double level, bool right) {
+                                    const double begin = processor_seconds();
+                                    quest.answer(level, right);
+                                    covered.next_level = std::max(covered.next_level, processor_seconds() - begin);
+                                },
+                                11);
+        psychophysics::Staircase stairs(rule);
+        covered.stairs +=
+            covers([&](int) { return stairs.level(); }, [&](double, bool right) { stairs.answer(right); }, 12);
+        covered.constant +=
+            covers([&](int trial) { return truth.threshold - 0.3 + 0.15 * (trial % 5); }, [](double, bool) {}, 13);
+    }
+    return covered;
+}
+
 double rms(const std::vector<double>& values) {
     double sum = 0.0;
     for (const double value : values) sum += value * value;
@@ -204,6 +293,7 @@ int bench_experiments(const ExperimentsChoice& choice) {
     const std::vector<Rate> rates = error_rates(choice);
     const MethodErrors errors = adaptive_errors(choice.observers);
     const auto [saved, saved_low] = saved_trials(errors);
+    const Covered covered = covered_thresholds(choice.intervals);
     const bool ok = std::ranges::all_of(rates, &Rate::ok) && saved_low >= 20.0;
     if (choice.json) {
         Json json{{"ok", ok}, {"rates", Json::array()}, {"adaptive", Json::array()}};
@@ -216,6 +306,9 @@ int bench_experiments(const ExperimentsChoice& choice) {
                                         {"quest_bias_percent", bias_percent(errors.quest[i])},
                                         {"staircase_rmse_log10", rms(errors.stairs[i])},
                                         {"staircase_bias_percent", bias_percent(errors.stairs[i])}});
+        json["bootstrap_covers_percent"] = {
+            {"constant", covered.constant}, {"quest_plus", covered.quest}, {"staircase", covered.stairs}};
+        json["quest_plus_next_level_max_ms"] = 1e3 * covered.next_level;
         json["trials_saved_percent"] = saved;
         json["trials_saved_low_percent"] = saved_low;
         fmt::print("{}\n", json.dump(2));
@@ -235,6 +328,11 @@ int bench_experiments(const ExperimentsChoice& choice) {
     fmt::print(
         "QUEST+ needs {:.0f} % fewer trials than a staircase of {} (at least {:.0f} %, one-sided bound of 95 %)\n",
         saved, trial_counts[3], saved_low);
+    fmt::print(
+        "\nbootstrap intervals of 95 % after 120 trials that cover, {} observers: constant stimuli {:.1f} %, QUEST+ "
+        "{:.1f} %, "
+        "staircase {:.1f} %\nQUEST+ chose the next level within {:.2f} ms of processor time\n",
+        choice.intervals, covered.constant, covered.quest, covered.stairs, 1e3 * covered.next_level);
     return ok ? done : answer_is_no;
 }
 
@@ -251,6 +349,9 @@ Verb experiments_verb() {
             verb.add("--studies", choice->studies, "simulated studies").range(100, 1'000'000).shows_default();
             verb.add("--subjects", choice->subjects, "of a study").range(4, 20).shows_default();
             verb.add("--observers", choice->observers, "of each adaptive method").range(20, 100'000).shows_default();
+            verb.add("--intervals", choice->intervals, "observers whose thresholds get a bootstrap interval")
+                .range(10, 100'000)
+                .shows_default();
             verb.flag("--json", choice->json, "as JSON");
             return [choice] { return bench_experiments(*choice); };
         }};
