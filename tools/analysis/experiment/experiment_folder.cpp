@@ -216,6 +216,16 @@ void ExperimentFolder::check_frozen(const Protocol& protocol) const {
 
 void ExperimentFolder::save() const { experiment::save_experiment_file(file_, folder_ / state_name); }
 
+std::size_t ExperimentFolder::row_of(const std::string& pseudonym) const {
+    std::size_t next = 0;
+    for (const SubjectEntry& one : file_.subjects) {
+        if (one.pseudonym == pseudonym) return one.row;
+        next = std::max(next, one.row + 1);
+    }
+    const auto freed = std::ranges::min_element(file_.freed_rows);
+    return freed == file_.freed_rows.end() ? next : *freed;
+}
+
 SubjectEntry ExperimentFolder::enrol(const std::string& pseudonym, bool is_simulated) {
     check_subject_name(pseudonym);
     const auto found = std::ranges::find(file_.subjects, pseudonym, &SubjectEntry::pseudonym);
@@ -225,14 +235,8 @@ SubjectEntry ExperimentFolder::enrol(const std::string& pseudonym, bool is_simul
                                     found->is_simulated ? "simulated" : "real", folder_.string()));
         return *found;
     }
-    SubjectEntry entry{pseudonym, 0, is_simulated, {}, false, {}, {}};
-    const auto freed = std::ranges::min_element(file_.freed_rows);
-    if (freed != file_.freed_rows.end()) {
-        entry.row = *freed;
-        file_.freed_rows.erase(freed);
-    } else {
-        for (const SubjectEntry& other : file_.subjects) entry.row = std::max(entry.row, other.row + 1);
-    }
+    const SubjectEntry entry{pseudonym, row_of(pseudonym), is_simulated, {}, false, {}, {}};
+    std::erase(file_.freed_rows, entry.row);
     file_.subjects.push_back(entry);
     save();
     return entry;

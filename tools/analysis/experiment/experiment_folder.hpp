@@ -25,6 +25,8 @@ public:
 
     const std::filesystem::path& path() const { return folder_; }
     const experiment::ExperimentFile& file() const { return file_; }
+    /// Row of the order that the subject has, or that `enrol` would give it.
+    std::size_t row_of(const std::string& pseudonym) const;
     /// The subject's entry; a new one gets the lowest row that a withdrawn subject freed, or the next row. Throws Error for a
     /// pseudonym that cannot be part of a file name, and when a subject was simulated and is now real, or the reverse.
     experiment::SubjectEntry enrol(const std::string& pseudonym, bool is_simulated);

@@ -157,8 +157,9 @@ public:
     ExperimentEnd run() {
         ExperimentEnd end;
         end.protocol_hash = folder_.protocol_hash();
-        // Before a row of the order is given away: a model may not suit the protocol.
+        // Before a row of the order is given away: a model may not suit the protocol, and a table of orders may end.
         if (choice_.model) simulated_.emplace(*choice_.model, protocol_, choice_.subject);
+        (void)experiment::condition_order(protocol_, folder_.row_of(choice_.subject));
         entry_ = folder_.enrol(choice_.subject, choice_.model.has_value());
         home_ = folder_.subject_folder(choice_.subject);
         std::error_code failure;
@@ -332,7 +333,10 @@ private:
             record.is_finished = task.done.empty() || std::ranges::any_of(values.at(task.done).values,
                                                                           [](double value) { return value > 0.5; });
         }
-        if (end.losses.size() > losses) record.marked = "the take is not whole";
+        if (end.losses.size() > losses) {
+            record.marked = "the take is not whole";
+            hooks_.say(fmt::format("trial {} is marked: {}\n", spec.number, end.losses.back()));
+        }
         if (record.marked.empty()) record.marked = mark_of(record, protocol_.limits);
         if (record.marked.empty()) record.marked = level_mark(record);
         if (!choice_.keeps_takes) fs::remove_all(at, failure);
