@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct ExperimentRunChoice {
     std::string experiment, subject, model;
-    fs::path out;
+    fs::path out, view_script;
     std::vector<std::string> settings, assets;
     std::optional<double> registration;  // mm
     int simulated = 0;  // number of simulated subjects
@@ -38,7 +38,8 @@ struct ExperimentRunChoice {
 /// Asks a person at the terminal.
 class Person {
 public:
-    explicit Person(bool has_window, const std::atomic<bool>& stop) : has_window_(has_window), stop_(stop) {}
+    Person(bool has_window, fs::path view_script, const std::atomic<bool>& stop)
+        : has_window_(has_window), view_script_(std::move(view_script)), stop_(stop) {}
 
     bool confirm(const std::string& text, char wanted) {
         say(stdout, text + "\n");
@@ -71,6 +72,7 @@ public:
             window::ViewedRunChoice viewed;
             static_cast<run::RunChoice&>(viewed) = choice;
             viewed.view.wanted = true;
+            viewed.view.script = view_script_;
             if (!condition.display.empty()) viewed.view.sight.display = run::find_display(condition.display);
             viewed.view.sight.offset = condition.offset;
             // The window waits for `over` alone.
@@ -126,6 +128,7 @@ private:
     }
 
     bool has_window_;
+    fs::path view_script_;
     const std::atomic<bool>& stop_;
     KeyReader keys_;
     compile::AssetCache assets_;
@@ -170,7 +173,7 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     compile::AssetCache assets;
     analysis::check_levels(choice.protocol, assets, {}, nullptr);
     analysis::check_tasks(choice.protocol, assets, choice.settings);
-    Person person(options.has_window, stop);
+    Person person(options.has_window, options.view_script, stop);
     LiveLine line;
     analysis::ExperimentHooks hooks;
     hooks.say = [&](const std::string& text) { say(stdout, text); };
@@ -219,7 +222,9 @@ Action declare_experiment_run(VerbOptions& verb) {
         .unit("mm")
         .positive();
     verb.flag("--no-takes", choice->drops_takes, "with --simulate: keep the numbers of each trial, but not its take");
-    verb.flag("--view", choice->has_window, "show each trial in a window");
+    const Option view = verb.flag("--view", choice->has_window, "show each trial in a window");
+    verb.add("--view-script", choice->view_script, "run the commands in this file in the window of each trial")
+        .needs(view);
     return [choice] { return run_experiment_verb(*choice); };
 }
 

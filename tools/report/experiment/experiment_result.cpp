@@ -407,8 +407,8 @@ const Fields<Mixed>& mixed_fields() {
 Result figure_of(const ExperimentAnalysis& analysis, const std::string& task, const std::string& measure) {
     Result result;
     result.entries.push_back(
-        {"", "Blue: subjects. Red: mean with its interval of 95 %, of logarithms where the axis is logarithmic", false,
-         Severity::none, ResultEntry::Picture{[&analysis, task, measure](const FigureStyle&) {
+        {"", "Blue: subjects. Orange: mean with its interval of 95 %, of logarithms where the axis is logarithmic",
+         false, Severity::none, ResultEntry::Picture{[&analysis, task, measure](const FigureStyle&) {
              return draw_group(analysis, task, measure);
          }}});
     return result;

@@ -22,8 +22,11 @@ struct LevelUnit {
 };
 LevelUnit level_unit_of(const Protocol& protocol) {
     const std::string name = protocol.stimulus->level_unit();
-    return {parse_unit(name).factor, name.empty() ? "fraction of the standard" : name};
+    return {parse_unit(name).factor,
+            name.empty() && protocol.stimulus->is_relative ? "fraction of the standard" : name};
 }
+
+std::string level_label(const LevelUnit& unit) { return unit.name.empty() ? "level" : "level, " + unit.name; }
 
 /// Legend of the conditions.
 void draw_legend(display::Figure& figure, const Protocol& protocol) {
@@ -61,7 +64,7 @@ display::Figure draw_psychometric(const analysis::ExperimentAnalysis& analysis) 
                         panel_height,
                         {stimulus.min / unit.factor, stimulus.max / unit.factor, stimulus.is_log},
                         {0.0, 1.0, false, 0.25}};
-        axes.draw(subject.entry.pseudonym + (subject.excluded.empty() ? "" : " (excluded)"), "level, " + unit.name,
+        axes.draw(subject.entry.pseudonym + (subject.excluded.empty() ? "" : " (excluded)"), level_label(unit),
                   protocol.response.kind == experiment::ResponseKind::choice ? "correct" : "yes");
         for (std::size_t c = 0; c < subject.thresholds.size(); ++c) {
             const analysis::SubjectThreshold& one = subject.thresholds[c];
@@ -104,7 +107,7 @@ display::Figure draw_matches(const analysis::ExperimentAnalysis& analysis) {
                         {0.5, n + 0.5, false, 1000.0},
                         {stimulus.min / unit.factor, stimulus.max / unit.factor, stimulus.is_log}};
         axes.draw(subject.entry.pseudonym + (subject.excluded.empty() ? "" : " (excluded)"),
-                  "began below | began above", s % panels_across == 0 ? "level, " + unit.name : "");
+                  "began below | began above", s % panels_across == 0 ? level_label(unit) : "");
         for (std::size_t c = 0; c < subject.thresholds.size(); ++c) {
             const analysis::SubjectThreshold& one = subject.thresholds[c];
             const display::Colour colour = curve_colours[c % curve_colours.size()];
