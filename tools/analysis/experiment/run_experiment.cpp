@@ -238,9 +238,10 @@ private:
     }
 
     /// A mouse or the patch's own simulated hand is no haptic device.
-    bool is_rehearsal() const {
+    bool is_rehearsal() {
         if (simulated_) return false;
         if (protocol_.registration && !choice_.registration) return true;
+        if (!has_hand()) return false;  // a sound card is the device
         for (const std::string& setting : choice_.settings) {
             const std::size_t at = setting.find(".device=");
             if (at == std::string::npos) continue;
@@ -252,6 +253,16 @@ private:
             return false;
         }
         return true;
+    }
+
+    bool has_hand() {
+        if (!has_hand_) {
+            const compile::Schedule plan = run::load_plan(trial_choice(protocol_, TrialSpec{}), assets_);
+            has_hand_ = std::ranges::any_of(plan.nodes, [](const compile::ScheduleNode& node) {
+                return node.type->role == NodeRole::hand_source || node.type->role == NodeRole::motor_sink;
+            });
+        }
+        return *has_hand_;
     }
 
     bool pause_before(const TrialSpec& spec, const SubjectSession& session) {
@@ -426,6 +437,7 @@ private:
     fs::path home_;
     std::vector<TrialRecord> trials_;
     std::optional<SimulatedSubject> simulated_;
+    std::optional<bool> has_hand_;  ///< of the patch
     compile::AssetCache assets_;
 };
 

@@ -226,5 +226,7 @@ TEST_CASE("keys end a session with q, and answers of a pipe are those of the tri
     REQUIRE(trials.size() == 2);
     CHECK(trials[0].find("\"answer\":0") != std::string::npos);
     CHECK(trials[1].find("\"answer\":1") != std::string::npos);
+    // Its device is a sound card, not a hand that is missing.
+    CHECK(trials[1].find("\"rehearsal\":false") != std::string::npos);
     CHECK(slurp(folder.path / "log").find("not complete; the same command resumes it") != std::string::npos);
 }
