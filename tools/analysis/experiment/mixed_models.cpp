@@ -146,7 +146,7 @@ suppressPackageStartupMessages(library(lmerTest))
 options(contrasts = c("contr.sum", "contr.poly"))
 data <- read.delim("data.tsv", colClasses = c(subject = "factor", period = "factor"), na.strings = "NA",
                    check.names = FALSE, quote = "", comment.char = "")
-number <- function(x) if (length(x) == 1 && is.finite(x)) sprintf("%.17g", x) else "NA"
+number <- function(x) if (length(x) == 1 && is.finite(x)) format(x, digits = 17) else "NA"
 cat("values\testimate\tlow\thigh\tp\tdf\tsubject\tslope\tresidual\tformula\tnote\n", file = "models.tsv")
 fit <- function(rows, a, b, level, before, fixed) {
   rows <- rows[rows[[level]] %in% c(a, b), ]
