@@ -13,17 +13,19 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Does one thing through the list of commands.
-void command(Person& person, const std::string& words) {
+void command(Person& person, const Eyes& eyes, const std::string& words) {
+    const auto is_open = [&] { return eyes.spots().contains("command"); };
     person.chord({"Control_L"}, "p");
-    Person::wait(1.2);
+    REQUIRE(sees(is_open));
     person.type(words);
-    Person::wait(1.2);
     person.tap("Return");
-    Person::wait(0.5);
+    CHECK(sees([&] { return !is_open(); }));
+    eyes.look_again();
 }
 
 }  // namespace
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a value, saves it and leaves",
           "[display]") {
     NEEDS_PERSON(person, display)
@@ -32,9 +34,9 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
                  "wires = [\"zebra.pose -> out.in\"]\n[devices.simulated]\ndriver = \"simulated\"\n"
                  "[nodes.zebra]\ntype = \"device_input\"\nrate = \"1 kHz\"\n"
                  "[nodes.out]\ntype = \"record\"\nrate = \"1 kHz\"\nfile = \"out.csv\"\n");
-    folder.write("script", watching_script("size 1000 700\n", 120.0));
+    folder.write("script", watching_script("size 1000 700\n", 600.0));
     auto done = std::async(std::launch::async,
-                           [&] { return on(display, folder, "view --view-scale 1 --view-script script", 230); });
+                           [&] { return on(display, folder, "view --view-scale 1 --view-script script", 700); });
     REQUIRE(person.sees_window("Tactus", 30.0));
     const Eyes eyes{folder.path};
     const auto shows = [&](const std::string& control) { return sees([&] { return eyes.spots().contains(control); }); };
@@ -42,36 +44,36 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
     REQUIRE(shows("example burr-training"));
     // The pointer is somewhere else.
     person.move(1500.0, 1100.0);
-    command(person, "open touch-sphere");
+    command(person, eyes, "open touch-sphere");
     REQUIRE(shows("hand_out"));
     keep(person, "keyboard-1-opened");
     person.tap("F5");
     REQUIRE(shows("stop"));
-    Person::wait(1.5);
+    eyes.look_again();
     // A menu by its arrows: Run is the third.
     person.tap("F10");
-    Person::wait(1.2);
+    eyes.look_again();
     for (const char* key : {"Down", "Down", "Right"}) {
         person.tap(key);
-        Person::wait(0.6);
+        eyes.look_again();
     }
-    Person::wait(1.2);
+    eyes.look_again();
     keep(person, "keyboard-2-menu");
     CHECK(shows("menu End the run"));
     for (int n = 0; n < 3; ++n) {
         person.tap("Escape");
-        Person::wait(0.4);
+        eyes.look_again();
     }
-    Person::wait(1.2);
-    command(person, "end the run");
+    eyes.look_again();
+    command(person, eyes, "end the run");
     REQUIRE(shows("run"));
-    command(person, "go to hand_out");
-    command(person, "set hand_out max_force");
-    Person::wait(1.2);
+    command(person, eyes, "go to hand_out");
+    command(person, eyes, "set hand_out max_force");
+    eyes.look_again();
     keep(person, "keyboard-3-value");
     person.type("7.25 N");
     person.tap("Return");
-    Person::wait(0.5);
+    eyes.look_again();
     // Who leaves is asked, and may stay.
     person.chord({"Control_L"}, "q");
     CHECK(shows("cancel closing"));
@@ -79,7 +81,7 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
     CHECK(sees([&] { return !eyes.spots().contains("cancel closing"); }));
     person.chord({"Control_L", "Shift_L"}, "s");
     REQUIRE(shows("file name"));
-    Person::wait(1.2);
+    eyes.look_again();
     // In a field all is chosen, and what is typed replaces it.
     person.chord({"Control_L"}, "a");
     person.type("mine");
@@ -89,31 +91,31 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
     const std::string text = slurp(folder.path / "mine.toml");
     INFO(text);
     CHECK(text.find("7.25 N") != std::string::npos);
-    Person::wait(1.2);
+    eyes.look_again();
     // A wrong name is typed anew, and the arrows go through the files.
     person.chord({"Control_L"}, "o");
     REQUIRE(shows("file other.toml"));
     person.type("nothing");
     person.tap("Return");
-    Person::wait(1.2);
+    eyes.look_again();
     person.chord({"Control_L"}, "a");
     person.type("ot");
     person.tap("Down");
-    Person::wait(0.8);
+    eyes.look_again();
     keep(person, "keyboard-5-files");
     person.tap("Return");
     CHECK(shows("zebra"));
     // It leaves although the patch runs: the window asks, and a key answers.
     person.tap("F5");
     REQUIRE(shows("stop"));
-    Person::wait(1.0);
+    eyes.look_again();
     person.chord({"Control_L"}, "q");
-    Person::wait(1.2);
+    eyes.look_again();
     keep(person, "keyboard-6-leaves");
     person.tap("Right");
-    Person::wait(0.3);
+    eyes.look_again();
     person.tap("Left");
-    Person::wait(1.2);
+    eyes.look_again();
     keep(person, "keyboard-7-answer");
     person.tap("Return");
     const bool left = done.wait_for(std::chrono::seconds(15)) == std::future_status::ready;
@@ -129,9 +131,9 @@ TEST_CASE("the keyboard alone goes to other places in a list of files", "[displa
     const Folder folder;
     fs::create_directories(folder.path / "inner");
     folder.write("inner/deep.toml", "");
-    folder.write("script", watching_script("size 1000 700\n", 60.0));
+    folder.write("script", watching_script("size 1000 700\n", 600.0));
     auto done = std::async(std::launch::async,
-                           [&] { return on(display, folder, "view --view-scale 1 --view-script script", 150); });
+                           [&] { return on(display, folder, "view --view-scale 1 --view-script script", 700); });
     REQUIRE(person.sees_window("Tactus", 30.0));
     const Eyes eyes{folder.path};
     const auto shows = [&](const std::string& control) { return sees([&] { return eyes.spots().contains(control); }); };
@@ -176,10 +178,10 @@ type = "record"
 rate = "1 kHz"
 file = "hand.csv"
 )");
-    folder.write("script", watching_script("size 1000 700\n", 90.0));
+    folder.write("script", watching_script("size 1000 700\n", 600.0));
     auto done = std::async(std::launch::async, [&] {
         return on(display, folder, "run touch.toml --view --view-scale 1 --view-script script --audio none --out out",
-                  150);
+                  700);
     });
     REQUIRE(person.sees_window("Tactus", 60.0));
     const Eyes eyes{folder.path};
@@ -213,26 +215,30 @@ file = "hand.csv"
     done.wait();
 }
 
+// Costly: a window is drawn in software while somebody works in it.
 TEST_CASE("the keyboard alone chooses fragments of a plan and groups them", "[display][live]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
-    folder.write("script", watching_script("size 1000 700\n", 90.0));
+    folder.write("script", watching_script("size 1000 700\n", 600.0));
     auto done = std::async(std::launch::async, [&] {
         return on(display, folder,
                   "run planning-trauma --view --layout plan --view-scale 1 --view-script script --set "
                   "hand.device=mouse --audio none --out out",
-                  150);
+                  700);
     });
     REQUIRE(person.sees_window("Tactus", 60.0));
     const Eyes eyes{folder.path};
     REQUIRE(sees([&] { return eyes.spots().contains("part fragment_02"); }));
     REQUIRE(sees([&] { return fs::exists(folder.path / "out/case.plan.json"); }));
+    // A run that ticks: before, the list is that of the preview.
+    REQUIRE(sees([&] { return !eyes.last_row("out/fragment.csv").empty(); }));
+    REQUIRE(sees([&] { return eyes.spots().contains("trigger (T)"); }));
+    eyes.look_again();
     person.move(1500.0, 1100.0);
-    command(person, "choose fragment_07");
-    command(person, "choose fragment_02");
-    Person::wait(1.0);
+    command(person, eyes, "choose fragment_07");
+    command(person, eyes, "choose fragment_02");
     keep(person, "keyboard-10-chosen");
-    command(person, "group the chosen");
+    command(person, eyes, "group the chosen");
     CHECK(sees([&] {
         return tactus::plan::state_of(tactus::plan::load_case_plan(folder.path / "out/case.plan.json"))
             .arrangement.move_together(1, 6);

@@ -68,9 +68,15 @@ TEST_CASE("an opened plan is seen and changed without a run, saved by Ctrl+S and
         Person::wait(1.0);
         walk.eyes.look_again();
         REQUIRE(walk.waits_for("part fragment_12", "panel tree"));
-        walk.press("part fragment_05", "panel tree");
-        press("lock");
-        REQUIRE(sees([&] { return plan::state_of(plan::load_case_plan(of_run)).arrangement.is_locked(4); }));
+        const auto is_locked_in_run = [&] {
+            return plan::state_of(plan::load_case_plan(of_run)).arrangement.is_locked(4);
+        };
+        for (int n = 0; n < 2 && !is_locked_in_run(); ++n) {
+            walk.press("part fragment_05", "panel tree");
+            press("lock");
+            sees(is_locked_in_run);
+        }
+        REQUIRE(is_locked_in_run());
         Person::wait(1.0);
         save();
         REQUIRE(sees([&] { return is_locked(4); }));
