@@ -30,8 +30,7 @@ using TapMaker = std::function<std::unique_ptr<io::Sink>(const io::FrameLayout&,
 /// The values in a take. Its decisions repeat them to the bit.
 enum class TakeValues : std::uint8_t {
     all,
-    none,  ///< until `Engine::record`
-    on_request,  ///< as none; the take is not wanted before `Engine::record`, and may be given up until then
+    on_request,  ///< none until `Engine::record`; the take is not wanted before that, and may be given up until then
 };
 
 struct EngineOptions {
