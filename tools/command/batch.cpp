@@ -2,7 +2,7 @@
 #include "tools/command/batch.hpp"
 
 #include "tools/analysis/workers.hpp"
-#include "tools/progress.hpp"
+#include "tools/command/progress.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Progress of long work on standard error.
-#include "tools/progress.hpp"
+#include "tools/command/progress.hpp"
 #include "tests/support/catch.hpp"
 
 #include <string>
 
-using namespace tactus;
+using namespace tactus::command;
 
 TEST_CASE("progress that is no terminal's has a line for each tenth, after two seconds") {
     int tenths = 0;

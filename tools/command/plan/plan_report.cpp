@@ -5,7 +5,7 @@
 #include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/plan/plan_options.hpp"
-#include "tools/progress.hpp"
+#include "tools/command/progress.hpp"
 #include "tools/report/plan/plan_result.hpp"
 #include "tools/terminal.hpp"
 

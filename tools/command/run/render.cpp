@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/patch_options.hpp"
+#include "tools/command/progress.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/progress.hpp"
 #include "tools/render/frames.hpp"
 #include "tools/run/device_scale.hpp"
 #include "tools/run/kept_assets.hpp"

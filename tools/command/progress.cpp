@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/progress.hpp"
+#include "tools/command/progress.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::command {
 
 namespace {
 
@@ -48,4 +48,4 @@ void Progress::clear() {
     line_.clear();
 }
 
-}  // namespace tactus
+}  // namespace tactus::command

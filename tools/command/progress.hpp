@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::command {
 
 /// From two seconds on: a bar on a terminal, otherwise a line for each 10 % that work reaches. May be called from several
 /// threads, as often as work advances: a line is written ten times per second at most.
@@ -40,4 +40,4 @@ std::string progress_bar(double done, std::string_view doing);
 /// The line of a stream that is no terminal, if `done` has reached a tenth after `tenths`, which is set to it; or "".
 std::string progress_line(double done, std::string_view doing, double seconds, int& tenths);
 
-}  // namespace tactus
+}  // namespace tactus::command
