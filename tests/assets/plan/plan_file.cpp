@@ -397,7 +397,7 @@ TEST_CASE("a reconstruction that cannot be is refused with its place") {
     refused("\"radius_m\": 0.0015", "\"radius_m\": -1", "not above 0");
     refused("\"thickness_m\": 0.0025", "\"thickness_m\": \"thin\"", "not a number");
     refused("\"name\": \"v\"", "\"name\": \"a\"", "two vessels of the name 'a'");
-    refused("\"reconstruction\": {", "\"rebuilt\": {", "has no reconstruction");
+    refused("\"reconstruction\": {", "\"rebuilt\": {", "unknown key 'rebuilt'");
     refused("\"margin_m\": 0.01", "\"margin_m\": 1e9", "beyond 100 m");
     // A name that no file could hold, before it is written.
     reconstruction::Flap flap;

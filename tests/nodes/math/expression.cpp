@@ -104,8 +104,8 @@ TEST_CASE("a result that is not finite gives 0") {
 
 TEST_CASE("an expression says what is missing") {
     CHECK(refusal("2*x") == "accepted");
-    CHECK_THAT(refusal("2*x", "x m", ""), ContainsSubstring("the formula gives m, but 'unit' says a number"));
-    CHECK_THAT(refusal("2*x", "x m", "N"), ContainsSubstring("the formula gives m, but 'unit' says N"));
+    CHECK_THAT(refusal("2*x", "x m", ""), ContainsSubstring("the formula gives m, but 'unit' is a number"));
+    CHECK_THAT(refusal("2*x", "x m", "N"), ContainsSubstring("the formula gives m, but 'unit' is N"));
     CHECK_THAT(refusal("x + y", "x m, y m"), ContainsSubstring("'y' needs a wire to 'in2'"));
     CHECK(refusal("x", "x m, y m") == "accepted");
     CHECK_THAT(refusal("x +", "x m"), ContainsSubstring("ends too early"));

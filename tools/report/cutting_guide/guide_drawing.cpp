@@ -100,7 +100,7 @@ struct DrawnSlot {
     }
 };
 
-std::vector<DrawnSlot> slots_of(const analysis::PlannedGuide& guide) {
+std::vector<DrawnSlot> drawn_slots(const analysis::PlannedGuide& guide) {
     const Pose to_frame = guide.made.frame.inverse();
     std::vector<DrawnSlot> slots;
     for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
@@ -175,7 +175,7 @@ void draw_slots_along(Figure& figure, const SectionView& view, const std::vector
 
 Figure guide_drawing(const analysis::PlannedGuide& guide) {
     const geometry::TriangleSurface surface = in_frame(guide.made.surface, guide.made.frame);
-    const std::vector<DrawnSlot> slots = slots_of(guide);
+    const std::vector<DrawnSlot> slots = drawn_slots(guide);
     Vec3 low(infinity), high(-infinity);
     for (const Vec3& v : surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
     double y = 0.0, z = 0.0;
