@@ -33,8 +33,9 @@ void write_names(SNDFILE* file, const std::vector<std::string>& names) {
             "<NAME>{1}</NAME></TRACK>",
             i + 1, names[i]);
     xml += "</TRACK_LIST></BWFXML>";
-    // libsndfile reads headers of up to 100 kB. The take lists the channels, too.
-    constexpr std::size_t max_bytes = 80'000;
+    // libsndfile holds headers of up to 100 kB in a buffer that it doubles: beyond half of that it writes a chunk without
+    // its content, and nobody can read the file. The take lists the channels, too.
+    constexpr std::size_t max_bytes = 40'000;
     if (xml.size() > max_bytes) return;
     if (xml.size() % 2 != 0) xml += ' ';
     SF_CHUNK_INFO chunk{};
