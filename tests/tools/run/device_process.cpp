@@ -138,7 +138,7 @@ TEST_CASE("a run that is killed or stopped leaves no force on the hand after 20 
     }
 }
 
-TEST_CASE("a run with a device in a process of its own can be replayed to the bit", "[slow]") {
+TEST_CASE("a run with a device in a process of its own can be replayed to the bit", "[kernel]") {
     const Watched watched;
     const std::string take = (watched.folder.path / "take").string();
     const Outcome run = watched.folder.tactus("run --seconds 2 --record " + take + " " + watched.arguments());
