@@ -50,6 +50,12 @@ Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept {
     return glm::normalize(Quat(1.0 + glm::dot(from, to), axis.x, axis.y, axis.z));
 }
 
+/// How a rotation of the hand turns the blade in the plane of the slot: that of the shortest way into it.
+Vec3 heading_of(const Pose& local) noexcept {
+    const Vec3 z = local.rotate(Vec3(0.0, 0.0, 1.0));
+    return (Vec3(0.0, 0.0, 1.0) + std::copysign(1.0, z.z) * z) / (1.0 + std::abs(z.z));
+}
+
 double beyond_ends(double at, double low, double high) noexcept { return at - std::clamp(at, low, high); }
 
 }  // namespace
@@ -334,10 +340,7 @@ void SlotHold::pull() noexcept {
     const Vec3 general(offset_[0], offset_[1] * settings_.lever, offset_[2] * settings_.lever);
     spring_ = {{0.0, 0.0, stiffness_ * general[0]}, torque_of(stiffness_ * general)};
     const Vec3 plane = hand_.plane + offset_;
-    // How a rotation of the hand turns the blade in the plane of the slot: that of the shortest way into it.
-    const Vec3 z = hand_.pose.rotate(Vec3(0.0, 0.0, 1.0));
-    const double side = std::copysign(1.0, z.z);
-    const Vec3 heading = (Vec3(0.0, 0.0, 1.0) + side * z) / (1.0 + std::abs(z.z));
+    const Vec3 heading = heading_of(hand_.pose);
     for (std::size_t r = 0; r < touch_count_; ++r) {
         const Touch& touch = touches_[r];
         const double x = touch.x - hand_.clamp.x, y = touch.y - hand_.clamp.y;
@@ -411,7 +414,7 @@ Wrench SlotHold::on_hand(const Wrench& on_blade) const noexcept {
         for (std::size_t r = 0; r < touch_count_; ++r) general -= carried[r] * touches_[r].normal;
     force.z = general[0];
     force += spring_.force;
-    torque = Vec3(0.0, 0.0, torque.z) + torque_of(general) + spring_.torque +
+    torque = torque.z * heading_of(hand_.pose) + torque_of(general) + spring_.torque +
              glm::cross(hand_.clamp - hand_.pose.position, force);
     return {frame_.orientation * force, frame_.orientation * torque};
 }
