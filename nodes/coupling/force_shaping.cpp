@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace tactus::nodes {
 
@@ -32,6 +33,10 @@ struct ForceShaping {
         const double share =
             cutoff > 0.0 ? -std::expm1(-2.0 * std::numbers::pi * cutoff * tick.elapsed_seconds()) : 1.0;
         smooth_ = smooth_ + (now + smooth_ * -1.0) * share;
+        if (!is_finite(smooth_)) {
+            wrench = std::exchange(smooth_, {});
+            return;
+        }
         wrench = {coupling::soft_limit(smooth_.force, straight_force, max_force),
                   coupling::soft_limit(smooth_.torque, straight_torque, max_torque)};
     }

@@ -317,6 +317,27 @@ TEST_CASE("a force that is not finite passes every node that smooths forces, so 
     }
 }
 
+TEST_CASE("a force whose changes overflow is felt as a fault in its ticks, and never after them") {
+    for (const char* type : {"smooth", "slew", "force_shaping"}) {
+        const bool is_shaping = std::string_view(type) == "force_shaping";
+        NodeHarness node = is_shaping ? NodeHarness(type, test::servo)
+                                      : NodeHarness(type, {.period = test::servo.period, .any = &value::wrench});
+        if (std::string_view(type) == "slew") node.set("rise", "1e6 1/s").set("fall", "1e6 1/s");
+        if (is_shaping) node.set("cutoff", "100 Hz");
+        node.feed<Wrench>("in", [](std::int64_t k) {
+            const double huge = 0.9 * std::numeric_limits<double>::max();
+            return Wrench{{0.0, 0.0, k == 100 ? huge : k == 101 ? -huge : 3.0}, {}};
+        });
+        node.prepare();
+        node.run(200);
+        const auto out = node.values<Wrench>(is_shaping ? "wrench" : "out");
+        CAPTURE(type);
+        if (is_shaping) CHECK_FALSE(is_finite(out[101]));
+        for (std::size_t k = 102; k < out.size(); ++k) REQUIRE(is_finite(out[k]));
+        CHECK(out.back().force.z == Approx(3.0));
+    }
+}
+
 TEST_CASE("a body that is let go leaves no force on the hand, where nothing states the strength of its force") {
     for (const char* type : {"quasi_static_coupling", "dynamic_coupling"}) {
         NodeHarness node(type, test::servo);
