@@ -156,3 +156,24 @@ TEST_CASE("a fragment that nothing draws stays in the hand, settle or not") {
         CHECK(node.last<Pose>("pose").position.x == Approx(25.98 * mm).margin(0.01 * mm));
     }
 }
+
+TEST_CASE("a fragment that is let go while it is pulled leaves no force on the hand") {
+    NodeHarness node("snap_to_fit", test::servo);
+    node.asset("moving", fracture().right).asset("fixed", fracture().left);
+    node.set("held", "1").set("target", "0");
+    node.feed("scene", fracture().scene).feed("device", beside).feed("grip", grip).feed("engaged", true);
+    node.feed<bool>("holding", [](std::int64_t k) { return k < 600; });
+    node.disconnect("settle").disconnect("strength");
+    node.prepare();
+    node.run(720);
+    const auto felt = node.values<Wrench>("wrench");
+    const double held = glm::length(felt[599].force);
+    double step = 0.0;
+    for (std::size_t k = 600; k < felt.size(); ++k)
+        step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
+    CAPTURE(held, step);
+    CHECK(held > 0.5);
+    CHECK(step < 0.02 * held);
+    CHECK(felt[701].force == Vec3(0.0));
+    CHECK(felt.back().torque == Vec3(0.0));
+}

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <iterator>
 #include <tuple>
+#include <utility>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -87,6 +88,28 @@ bool same_bits(const Pose& a, const Pose& b) {
 }
 
 }  // namespace
+
+TEST_CASE("the port of a plan's commands has the names and kinds by which takes keep them") {
+    constexpr std::array names{
+        "command",       "command_first",  "command_second", "command_set", "command_switch",      "command_x",
+        "command_y",     "command_z",      "command_qw",     "command_qx",  "command_qy",          "command_qz",
+        "command_score", "command_margin", "command_rms",    "command_gap", "command_penetration", "command_overlap"};
+    REQUIRE(plan::plan_command_port.size() == names.size());
+    for (std::size_t n = 0; n < names.size(); ++n) CHECK(plan::plan_command_port[n].name == names[n]);
+    const std::pair<double, plan::PlanCommand> kinds[] = {
+        {1.0, plan::PlaceFragment{}},      {2.0, plan::SettleFragment{}},   {3.0, plan::JoinFragments{}},
+        {4.0, plan::AddFragments{}},       {5.0, plan::SplitFragments{}},   {6.0, plan::DissolveGroup{}},
+        {7.0, plan::LockFragments{}},      {8.0, plan::HideFragments{}},    {9.0, plan::UndoStep{}},
+        {10.0, plan::RedoStep{}},          {11.0, plan::GoToAlternative{}}, {12.0, plan::DropAlternative{}},
+        {13.0, plan::RestoreAlternative{}}};
+    for (const auto& [kind, command] : kinds) {
+        CAPTURE(kind);
+        CHECK(plan::numbers_of(command)[0] == kind);
+    }
+    NodeHarness node("case_scene", servo);
+    for (const char* name : names) CHECK_NOTHROW(node.set_value(name, 0.0));
+    CHECK_NOTHROW(node.set_value("command_number", 0.0));
+}
 
 TEST_CASE("a settled fragment stands where it fits when it is let go, and the step says so to the bit") {
     Session session;
