@@ -5,9 +5,12 @@
 #include "dsp/core/stop.hpp"
 #include "tools/analysis/workers.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 #include <utility>
+#include <variant>
 
 namespace tactus::analysis {
 
@@ -35,13 +38,32 @@ fit::PlacedBone placed_bone(const CaseFragment& fragment, const Pose& pose) {
 
 double shown_mm(double millimetres) { return std::round(millimetres * 100.0) / 100.0 + 0.0; }
 
-bool change_plan(plan::CasePlan& plan, const plan::PlanCommand& command, plan::StepWords words,
-                 const std::filesystem::path& path) {
+namespace {
+
+/// The fragment that a command moves; −1: it moves none.
+int moved_by(const plan::PlanCommand& command) {
+    if (const auto* place = std::get_if<plan::PlaceFragment>(&command)) return place->fragment;
+    if (const auto* settle = std::get_if<plan::SettleFragment>(&command)) return settle->fragment;
+    return -1;
+}
+
+}  // namespace
+
+bool apply_command(plan::CasePlan& plan, const plan::PlanCommand& command, plan::StepWords words) {
     using Outcome = plan::PlanHistory::Outcome;
     words.time = plan::time_of_day();
     const Outcome outcome = plan::change(plan, command, words);
     if (outcome == Outcome::unchanged) return false;
-    if (outcome != Outcome::done) throw Error(std::string(plan::text_of(outcome)));
+    if (outcome == Outcome::done) return true;
+    const int moved = moved_by(command);
+    if (moved < 0 || moved >= static_cast<int>(plan.fragments.size())) throw Error(std::string(plan::text_of(outcome)));
+    throw Error(fmt::format("'{}' cannot be moved: {}", plan.fragments[static_cast<std::size_t>(moved)].name,
+                            plan::text_of(outcome)));
+}
+
+bool change_plan(plan::CasePlan& plan, const plan::PlanCommand& command, plan::StepWords words,
+                 const std::filesystem::path& path) {
+    if (!apply_command(plan, command, std::move(words))) return false;
     plan::save_case_plan(plan, path);
     return true;
 }

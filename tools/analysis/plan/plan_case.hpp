@@ -41,8 +41,10 @@ struct OpenPlan {
     explicit OpenPlan(const std::filesystem::path& path) : lock(path), plan(plan::load_case_plan(path)) {}
 };
 
-/// Applies a command to a plan, as a run and the window do, and saves the plan with the time of day. False: the plan is
-/// already so, and was not written. Throws Error if the command cannot be done.
+/// Applies a command to a plan, as a run and the window do, with the time of day. False: the plan is already so. Throws
+/// Error if the command cannot be done, which names the fragment that cannot be moved.
+bool apply_command(plan::CasePlan& plan, const plan::PlanCommand& command, plan::StepWords words);
+/// The same, and saves the plan if it has changed.
 bool change_plan(plan::CasePlan& plan, const plan::PlanCommand& command, plan::StepWords words,
                  const std::filesystem::path& path);
 
