@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -316,4 +317,42 @@ TEST_CASE("the JSON of analyses of records follows their schemas") {
         const json schema = json::parse(test::slurp(folder.path / fmt::format("schemas/{}.schema.json", one.verb)));
         CHECK(broken_rule(schema, outcome.answer(), one.verb) == "");
     }
+}
+
+TEST_CASE("a list of integers is written without decimals, and its schema says so") {
+    struct Grid {
+        std::array<int, 3> size;
+    };
+    const auto fields = report::Fields<Grid>("grid").integers("size", "voxels", &Grid::size);
+    const Result result = fields.of({{512, 512, 300}});
+    CHECK(report::json_of(result).dump() == R"({"size":[512,512,300]})");
+    CHECK(report::text_of(result) == "voxels  512 512 300\n");
+    CHECK_THAT(fields.schema().dump(), ContainsSubstring(R"("items":{"type":"integer"})"));
+}
+
+TEST_CASE("a value that is known to be none is null or empty in JSON, one that is not known is left out") {
+    struct Search {
+        bool is_done;
+    };
+    const auto is_done = [](const Search& s) { return s.is_done; };
+    const auto fields = report::Fields<Search>("search")
+                            .text("found", "found", [](const Search&) { return std::optional<std::string>(); })
+                            .omitted(is_done)
+                            .texts("others", "others", [](const Search&) { return std::vector<std::string>(); })
+                            .omitted(is_done);
+    CHECK(report::json_of(fields.of({true})).dump() == R"({"found":null,"others":[]})");
+    CHECK(report::json_of(fields.of({false})).dump() == "{}");
+}
+
+TEST_CASE("a table does not repeat the heading of its section") {
+    struct Row {
+        int n;
+    };
+    struct Section {
+        std::vector<Row> rows;
+    };
+    static const auto row = report::Fields<Row>("row").integer("n", "number", &Row::n);
+    static const auto section = report::Fields<Section>("section").rows("pairs", "gaps", row, &Section::rows);
+    const auto whole = report::Fields<Section>("whole").child("", "gaps", section, [](const Section& s) { return s; });
+    CHECK(report::text_of(whole.of({{{1}, {2}}})) == "gaps\n  number\n       1\n       2\n");
 }

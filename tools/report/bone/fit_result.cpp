@@ -206,7 +206,7 @@ const Fields<RegisteredFiles>& registration_fields() {
                     [](const R& r) { return r.found->judged ? std::optional(r.found->judged->score) : std::nullopt; })
             .omitted()
             .rows("rivals", "other poses, best first", rival_fields(), rivals_of)
-            .omitted()
+            .omitted([](const R& r) { return r.found->judged.has_value(); })
             .text("", "other poses",
                   [](const R& r) {
                       return std::string(r.found->judged && r.found->judged->rivals.empty() ? "none was found" : "");
@@ -219,7 +219,7 @@ const Fields<RegisteredFiles>& registration_fields() {
             .omitted()
             .child("region", "displaced part", region_fields(),
                    [](const R& r) -> const auto& { return r.found->region; })
-            .omitted()
+            .omitted([](const R& r) { return r.has_region; })
             .text("", "displaced part",
                   [](const R& r) { return std::string(r.has_region && !r.found->region ? "none" : ""); });
     return all;

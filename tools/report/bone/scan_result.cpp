@@ -129,7 +129,7 @@ const Fields<ImportedFile>& imported_fields() {
             .titled([](const F& f) { return f.name; })
             .text("frame", "", of(&ImportSummary::frame))
             .text("hu", "", of(&ImportSummary::hu))
-            .vector("size", "voxels", fixed(0), of(&ImportSummary::size))
+            .integers("size", "voxels", of(&ImportSummary::size))
             .vector("voxel_mm", "voxel", significant(3, "mm"), of(&ImportSummary::voxel_mm))
             .number("bone_volume_mm3", "volume of bone", fixed(0, "mm³"), of(&ImportSummary::bone_volume_mm3))
             .number("surface_area_mm2", "surface", fixed(0, "mm²"), of(&ImportSummary::surface_area_mm2))
@@ -395,7 +395,7 @@ const Fields<InspectedFile>& inspection_fields() {
                 })
             .text("kind", "kind", of(&I::kind))
             .text("frame", "frame", of(&I::frame))
-            .vector("size", "", fixed(0), of(&I::size))
+            .integers("size", "", of(&I::size))
             .text("", "voxels",
                   [](const F& f) {
                       const auto& [x, y, z] = f.found->size;
@@ -493,7 +493,14 @@ const Fields<SegmentedFile>& segmentation_fields() {
             .text("", "touching", [](const S& s) { return rest_text(s.found->touching, "pairs touch"); })
             .rows("unseeded_islands", "", island_fields(), of(&Found::islands))
             .table("islands without a seed", [](const S& s) { return first_rows(island_fields(), s.found->islands); })
-            .text("", "islands without a seed", [](const S& s) { return rest_text(s.found->islands, "islands"); })
+            .text("", "islands without a seed",
+                  [](const S& s) {
+                      const std::vector<analysis::UnseededIsland>& islands = s.found->islands;
+                      std::size_t rest = 0;
+                      for (std::size_t n = max_printed; n < islands.size(); ++n) rest += islands[n].voxels;
+                      return rest > 0 ? fmt::format("{}, {} voxels in all", rest_text(islands, "islands"), rest)
+                                      : std::string();
+                  })
             .rows("uncertain", "", uncertain_fields(), of(&Found::uncertain))
             .table("paint first", [](const S& s) { return first_rows(uncertain_fields(), s.found->uncertain); })
             .integer("marrow_voxels", "", [](const S& s) { return s.found->marrow_voxels; })

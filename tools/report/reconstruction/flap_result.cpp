@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace tactus::report {
 
@@ -95,7 +97,12 @@ Fields<SiteReach> made_reach_fields(bool with_points) {
         .number("slack_mm", "slack", from_si(1, "mm"), &R::slack)
         .number("strain", "strain", fixed(1, "%", "1"), &R::strain)
         .number("tension_n", "tension", fixed(2, "N"), &R::tension)
-        .number("bend_radius_mm", "bend", from_si(1, "mm"), &R::bend_radius)
+        .number("bend_radius_mm", "", from_si(1, "mm"), &R::bend_radius)
+        .text("", "bend, mm",
+              [](const R& r) {
+                  return std::isfinite(r.bend_radius) ? fmt::format("{:.1f}", r.bend_radius / mm)
+                                                      : std::string("straight");
+              })
         .number("twist_deg", "twist", from_si(0, "°"), &R::twist)
         .number("contact_mm", "on bone", from_si(1, "mm"), &R::contact)
         .number("to_plate_mm", "to plate", from_si(1, "mm"), &R::to_plate)
@@ -109,7 +116,7 @@ const Fields<SpanReach>& span_fields() {
     static const Fields<S> all =
         Fields<S>("vessel between two segments")
             .text("vessel", "vessel", &S::vessel)
-            .vector("segments", "", fixed(0), [](const S& s) { return std::pair(double(s.first), double(s.second)); })
+            .integers("segments", "", [](const S& s) { return std::array{s.first, s.second}; })
             .text("", "between segments",
                   [](const S& s) { return fmt::format("{} and {}", s.first + 1, s.second + 1); })
             .number("in_situ_mm", "in the leg", from_si(1, "mm"), &S::in_situ)

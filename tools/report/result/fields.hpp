@@ -124,6 +124,17 @@ public:
             std::move(key), std::move(name), [] { return schema_of_list(schema_of_texts()); },
             [read](const T& of) { return ResultEntry::Groups{std::invoke(read, of)}; });
     }
+    /// Integers on one line, such as the size of a grid. `read`: a range of them.
+    template <class Read>
+    Fields& integers(std::string key, std::string name, Read read) {
+        return add(
+            std::move(key), std::move(name), [] { return schema_of_list({{"type", "integer"}}); },
+            [read](const T& of) {
+                ResultEntry::Integers made;
+                for (const auto value : std::invoke(read, of)) made.values.push_back(static_cast<long long>(value));
+                return made;
+            });
+    }
     /// A text of pages that explains the section, before its values.
     template <class Read>
     Fields& remark(Read read) {
@@ -245,9 +256,11 @@ public:
             [read](const T& of) { return ResultEntry::Children{std::invoke(read, of), true}; });
     }
 
-    /// Of the last field: where its value is missing, JSON leaves it out.
-    Fields& omitted() {
+    /// Of the last field: where its value is missing, JSON leaves it out; but where `is_known` returns true the value is
+    /// known to be none, and JSON has null or an empty list.
+    Fields& omitted(std::function<bool(const T&)> is_known = {}) {
         fields_.back().is_omitted = true;
+        fields_.back().is_known = std::move(is_known);
         return *this;
     }
     /// The fields of a part of the struct, among those of the struct, and its title if the struct has none. `read` returns
@@ -261,6 +274,8 @@ public:
                 made.severity = [read, inner = field.severity](const T& of) { return inner(std::invoke(read, of)); };
             if (field.where)
                 made.where = [read, inner = field.where](const T& of) { return inner(std::invoke(read, of)); };
+            if (field.is_known)
+                made.is_known = [read, inner = field.is_known](const T& of) { return inner(std::invoke(read, of)); };
             made.is_omitted = field.is_omitted;
             made.remark = field.remark;
             fields_.push_back(std::move(made));
@@ -317,7 +332,8 @@ public:
                       page_title_ ? page_title_(value) : std::string(),
                       mark_ ? mark_(value) : std::nullopt};
         for (const Field& field : fields_)
-            result.entries.push_back({field.key, field.name, field.is_omitted,
+            result.entries.push_back({field.key, field.name,
+                                      field.is_omitted && !(field.is_known && field.is_known(value)),
                                       field.severity ? field.severity(value) : Severity::none, field.read(value),
                                       field.where ? field.where(value) : Where::everywhere, field.remark});
         return result;
@@ -358,6 +374,7 @@ private:
         std::function<decltype(ResultEntry::value)(const T&)> read;
         std::function<Severity(const T&)> severity{};
         std::function<Where(const T&)> where{};
+        std::function<bool(const T&)> is_known{};
         bool is_omitted = false;
         std::string remark{};
     };

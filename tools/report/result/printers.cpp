@@ -155,7 +155,8 @@ std::string table_text(const Cells& cells, const std::string& indent) {
     return out;
 }
 
-void add_text(std::string& out, const Result& result, const std::string& indent) {
+/// `heading`: above the result; a table of this name does not repeat it.
+void add_text(std::string& out, const Result& result, const std::string& indent, const std::string& heading) {
     for (const ResultEntry& entry : result.entries)
         for (const std::string& text : warnings_of(entry, Medium::terminal))
             out += fmt::format("{}{}: {}\n", indent, entry.name, text);
@@ -165,11 +166,13 @@ void add_text(std::string& out, const Result& result, const std::string& indent)
     for (const ResultEntry& entry : result.entries) {
         if (!is_printed(entry, Medium::terminal) || is_missing(entry)) continue;
         if (const auto* rows = as<ResultEntry::Rows>(entry))
-            out += fmt::format("{}{}\n{}", indent, entry.name, table_text(cells_of(*rows), indent + "  "));
+            out += (entry.name == heading ? "" : fmt::format("{}{}\n", indent, entry.name)) +
+                   table_text(cells_of(*rows), entry.name == heading ? indent : indent + "  ");
         else if (const auto* children = as<ResultEntry::Children>(entry)) {
             for (const Result& one : children->results) {
-                out += fmt::format("{}{}\n", indent, one.title.empty() ? entry.name : one.title);
-                add_text(out, one, indent + "  ");
+                const std::string& head = one.title.empty() ? entry.name : one.title;
+                out += fmt::format("{}{}\n", indent, head);
+                add_text(out, one, indent + "  ", head);
             }
         } else if (is_line(entry, Medium::terminal)) {
             for (const std::string& line : lines_of(entry))
@@ -190,6 +193,7 @@ Json value_json(const ResultEntry& entry) {
                      return list;
                  },
                  [](const ResultEntry::Integer& i) { return i.value ? Json(*i.value) : Json(); },
+                 [](const ResultEntry::Integers& i) { return Json(i.values); },
                  [](const ResultEntry::Text& t) { return t.text ? Json(*t.text) : Json(); },
                  [](const ResultEntry::Flag& f) { return f.value ? Json(*f.value) : Json(); },
                  [](const ResultEntry::Texts& t) { return Json(t.texts); },
@@ -229,7 +233,7 @@ std::string capitalised(std::string text) {
     return text;
 }
 
-/// `title`: of the page, which is no heading again.
+/// `title`: of the page or the section, which is no heading again.
 void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, const std::string& title) {
     ReportList warnings{{}, true};
     ReportTable values{{"value", ""}, {}};
@@ -270,8 +274,9 @@ void add_blocks(std::vector<ReportBlock>& out, const Result& result, int depth, 
                                          std::move(cells.warnings)});
         } else if (const auto* children = as<ResultEntry::Children>(entry)) {
             for (const Result& one : children->results) {
-                head(one.title.empty() ? entry.name : one.title);
-                add_blocks(out, one, depth + 1, {});
+                const std::string& section = one.title.empty() ? entry.name : one.title;
+                head(section);
+                add_blocks(out, one, depth + 1, section);
             }
         }
     }
@@ -312,7 +317,7 @@ void add_csv(std::string& out, const Result& result, const std::string& above) {
 
 std::string text_of(const Result& result) {
     std::string out = result.title.empty() ? "" : result.title + "\n";
-    add_text(out, result, result.title.empty() ? "" : "  ");
+    add_text(out, result, result.title.empty() ? "" : "  ", "");
     return out;
 }
 

@@ -124,6 +124,9 @@ std::string shown(const ResultEntry& entry) {
                      return with_unit(fmt::format("{}", fmt::join(all, n.between)), n.format.unit);
                  },
                  [](const ResultEntry::Integer& i) { return i.value ? std::to_string(*i.value) : std::string(dash); },
+                 [](const ResultEntry::Integers& i) {
+                     return i.values.empty() ? std::string(dash) : fmt::format("{}", fmt::join(i.values, " "));
+                 },
                  [](const ResultEntry::Text& t) { return t.text && !t.text->empty() ? *t.text : std::string(dash); },
                  [](const ResultEntry::Flag& f) {
                      return std::string(!f.value ? dash : *f.value ? "yes" : "no");
@@ -154,6 +157,7 @@ bool is_missing(const ResultEntry& entry) {
     return std::visit(Overload{[](const ResultEntry::Quantity& q) { return !q.number.value; },
                                [](const ResultEntry::Numbers& n) { return !n.values; },
                                [](const ResultEntry::Integer& i) { return !i.value; },
+                               [](const ResultEntry::Integers& i) { return i.values.empty(); },
                                [](const ResultEntry::Text& t) { return !t.text || t.text->empty(); },
                                [](const ResultEntry::Flag& f) { return !f.value; },
                                [](const ResultEntry::Texts& t) { return t.texts.empty(); },

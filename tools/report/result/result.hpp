@@ -88,6 +88,9 @@ struct ResultEntry {
     struct Integer {
         std::optional<long long> value;
     };
+    struct Integers {
+        std::vector<long long> values;
+    };
     struct Text {
         std::optional<std::string> text;
     };
@@ -133,8 +136,8 @@ struct ResultEntry {
     std::string key, name;
     bool is_omitted = false;  ///< in JSON a value that is missing is left out, not null
     Severity severity = Severity::none;
-    std::variant<Quantity, Numbers, Integer, Text, Flag, Texts, Groups, Remark, Series, Picture, Pictures, Rows,
-                 Children>
+    std::variant<Quantity, Numbers, Integer, Integers, Text, Flag, Texts, Groups, Remark, Series, Picture, Pictures,
+                 Rows, Children>
         value;
     Where where = Where::everywhere;
     std::string remark{};  ///< of a table: a paragraph of pages that explains it

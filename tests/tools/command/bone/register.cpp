@@ -66,6 +66,8 @@ TEST_CASE("register finds a bone that was turned by 90 degrees, names rival pose
     CHECK(fit.code == 0);
     const json found = json::parse(fit.out);
     CHECK(found["verdict"] == "fit");
+    CHECK(found.contains("rivals"));  // an empty list where none was found
+    CHECK_FALSE(found.contains("region"));  // which was not searched
     CHECK(test::broken_schema(folder, "register", found) == "");
     // The origin of the bar goes to (25, -8, 12), and x to y.
     const json& pose = found["pose"];
