@@ -60,6 +60,7 @@ struct FittedSlot {
 const Fields<FittedSlot>& slot_fields() {
     using S = FittedSlot;
     const auto slot = [](auto member) { return [member](const S& s) { return s.slot->*member; }; };
+    const auto width = [](const S& s) { return s.fit->width > 0.0 ? std::optional(s.fit->width) : std::nullopt; };
     using Made = cutting_guide::MadeSlot;
     static const Fields<S> all =
         Fields<S>("slot of a guide")
@@ -67,13 +68,16 @@ const Fields<FittedSlot>& slot_fields() {
             .text("cut", "cut", [](const S& s) { return s.slot->cut.name; })
             .child("plane", "", plane_fields(), [](const S& s) -> const auto& { return s.slot->cut.plane; })
             .integer("sides", "sides", [](const S& s) { return static_cast<int>(s.slot->sides); })
-            .number("width_mm", "width", from_si(2, "mm"),
-                    [](const S& s) { return s.fit->width > 0.0 ? std::optional(s.fit->width) : std::nullopt; })
+            .number("width_mm", "", from_si(2, "mm"), width)
+            .text("", "width, mm",
+                  [width](const S& s) { return width(s) ? fmt::format("{:.2f}", *width(s) / mm) : "ledge"; })
             .number("depth_mm", "depth", from_si(1, "mm"), slot(&Made::depth))
             .number("length_mm", "length", from_si(1, "mm"), slot(&Made::length))
             .number("offset_mm", "off the plan", from_si(3, "mm").with_sign(), [](const S& s) { return s.fit->offset; })
             .number("angle_error_deg", "angle off the plan", from_si(3, "°"), [](const S& s) { return s.fit->angle; })
-            .number("play_deg", "play of the blade", from_si(1, "°"), slot(&Made::play));
+            .number("play_deg", "", from_si(1, "°"), slot(&Made::play))
+            .text("", "play of the blade, °",
+                  [](const S& s) { return s.slot->play ? fmt::format("{:.1f}", *s.slot->play / degree) : "not held"; });
     return all;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A guide as blocks of a report: pictures on its bone, dimensions of its slots and holes, warnings.
+// A guide as a result: pictures on its bone, dimensions of its slots and holes, warnings.
 #pragma once
 
 #include "tools/analysis/cutting_guide/plan_guide.hpp"

@@ -86,13 +86,20 @@ const Fields<Residual>& residual_fields() {
 struct TargetMedians {
     double before;
     std::optional<double> there;
+    bool is_as_scanned;
+
+    std::optional<double> there_if(bool as_scanned) const { return as_scanned == is_as_scanned ? there : std::nullopt; }
 };
 
 const Fields<TargetMedians>& median_fields() {
     static const Fields<TargetMedians> all =
         Fields<TargetMedians>("median distance from the healthy side")
             .number("median_before_mm", "where it was", from_si(2, "mm"), &TargetMedians::before)
-            .number("median_there_mm", "at its place", from_si(2, "mm"), &TargetMedians::there);
+            .number("median_there_mm", "", from_si(2, "mm"), &TargetMedians::there)
+            .number("", "where the scan has it", from_si(2, "mm"),
+                    [](const TargetMedians& t) { return t.there_if(true); })
+            .number("", "where its faces fit", from_si(2, "mm"),
+                    [](const TargetMedians& t) { return t.there_if(false); });
     return all;
 }
 
@@ -153,7 +160,15 @@ const Fields<SnappedFragment>& snapped_fields() {
     static const Fields<S> all =
         Fields<S>("fit of a fragment of a plan")
             .part(match_fields(), [](const S& s) -> const JudgedMatch& { return s.match; })
-            .notes("", "note", [](const S& s) { return notes_of(s.match); })
+            .notes("", "note",
+                   [](const S& s) {
+                       std::vector<std::string> notes = notes_of(s.match);
+                       const FragmentMatch& match = s.match.found.match;
+                       if (s.is_moved && match.verdict == fit::FitVerdict::uncertain)
+                           notes.push_back(fmt::format("{} is put there; 'tactus plan accept' settles it",
+                                                       s.match.name_of(match.moving)));
+                       return notes;
+                   })
             .flag("moved_there", "moved there", &S::is_moved)
             .numbers("as_scanned_mm2", [](const S& s) { return in_mm2(s.left_out); })
             .notes("", "left out", [](const S& s) { return left_out_notes(s.left_out); })
@@ -161,7 +176,8 @@ const Fields<SnappedFragment>& snapped_fields() {
                    [](const S& s) {
                        return s.target
                                   ? std::optional(TargetMedians{
-                                        s.target->before, s.has_place ? std::optional(s.target->there) : std::nullopt})
+                                        s.target->before, s.has_place ? std::optional(s.target->there) : std::nullopt,
+                                        s.match.found.as_scanned})
                                   : std::nullopt;
                    })
             .omitted();

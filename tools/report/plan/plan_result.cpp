@@ -110,6 +110,7 @@ const Fields<PlacedFragment>& fragment_fields() {
             .judged([](const F& f) { return f.is_void() ? Severity::fail : Severity::none; })
             .number("", "score", fixed(2), held(&Fit::score))
             .number("", "margin", fixed(2), held(&Fit::margin))
+            .number("", "rms", from_si(3, "mm"), held(&Fit::rms))
             // Plans of earlier versions do not contain it.
             .number("", "fitted area", from_si(0, "mm²"),
                     [](const F& f) {
@@ -376,7 +377,7 @@ const Fields<ShownPlan>& made_plan_fields() {
                              : fmt::format("for this version of the plan: overlaps{}; 'tactus plan check' does",
                                            p.state.reconstruction ? ", vessels, hardware" : "");
               })
-        .child("", "Reconstruction", reported_flap_fields(),
+        .child("", "planned operation", reported_flap_fields(),
                [](const P& p) -> const std::optional<ReportedFlap>& { return p.flap; })
         .rows("fragments", "fragments", fragment_fields(), fragments_of)
         .rows("groups", "", group_fields(), groups_of)
@@ -395,12 +396,15 @@ const Fields<ShownPlan>& made_plan_fields() {
             "Curve: from the segment's axis to the middle of the target within 15 mm, in sections across the axis. "
             "Contour: from the target's surface to the segment's, where both face the same way; positive beyond the "
             "target, 2.5 and 97.5 % of the area.")
-        .child("", "Pictures", scenes_fields(), [](const P& p) { return p.drawn ? &*p.drawn : nullptr; })
-        .child("", "Gaps and overlaps", drawn_gaps_fields(), [](const P& p) { return p.drawn ? &*p.drawn : nullptr; })
+        .child("", "pictures", scenes_fields(), [](const P& p) { return p.drawn ? &*p.drawn : nullptr; })
+        .on_pages()
+        .child("", "gaps and overlaps", drawn_gaps_fields(), [](const P& p) { return p.drawn ? &*p.drawn : nullptr; })
         .rows("", "poses", pose_row_fields(), fragments_of)
         .on_pages()
         .explained("p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z.")
         .rows("", "order of steps", step_fields(), steps_of)
+        .text("", "order of steps",
+              [](const P& p) { return std::string(p.drawn && steps_of(p).empty() ? "there are no steps" : ""); })
         .rows("alternatives", "alternatives", alternative_fields(), alternatives_of);
     return all;
 }

@@ -287,8 +287,14 @@ const Fields<ReportedFlap>& reported_flap_fields() {
                 })
             .part(fibula_tables(), [](const F& f) { return cuts_of(f.current()); })
             .sections("cuts", cut_drawings)
+            .on_pages()
             .rows("", "order of the operation, as planned", operation_fields(), operation)
             .part(flap_measures_fields(), [](const F& f) -> const auto& { return f.current().measures; })
+            .number("", "wanted there", from_si(1, "mm"),
+                    [](const F& f) {
+                        return f.current().measures.tumour_margin ? std::optional(f.current().study->flap().margin)
+                                                                  : std::nullopt;
+                    })
             .rows("", "candidates, best first", candidate_fields(), [](const F& f) { return numbered(f.candidates); })
             .rows("", "alternatives side by side", alternative_fields(),
                   [](const F& f) -> std::span<const MeasuredAlternative> {
