@@ -4,6 +4,7 @@
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace tactus::file {
 
@@ -36,6 +37,9 @@ void check_outputs(std::span<const fs::path> sources, std::span<const fs::path> 
         const fs::path folder = out.has_parent_path() ? out.parent_path() : ".";
         if (!fs::is_directory(folder, ignored))
             throw Error(fmt::format("{}: cannot be written: there is no folder {}", out.string(), folder.string()));
+        if (::access(folder.c_str(), W_OK) != 0)
+            throw Error(
+                fmt::format("{}: cannot be written: the folder {} may not be changed", out.string(), folder.string()));
         if (fs::is_directory(out, ignored))
             throw Error(fmt::format("{}: this is a folder; name a file for the result", out.string()));
     }

@@ -63,6 +63,8 @@ void add_record_options(VerbOptions& verb, std::filesystem::path& folder, bool& 
               "record every value, not only the first 30 MB: the take repeats all of them in each case, and 'replay "
               "--record' writes them")
         .needs(record);
+    // Old spelling: values were recorded unless it was given.
+    verb.flag("!--no-values", values, "record no more values than the first").hidden();
 }
 
 }  // namespace tactus::command

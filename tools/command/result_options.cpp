@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/result_options.hpp"
 
+#include "assets/bone/bone.hpp"
+#include "assets/file/outputs.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/report/blocks/pages.hpp"
@@ -99,7 +101,12 @@ bool is_result_file(const std::filesystem::path& path) {
     return report::is_figure_file(path) || std::ranges::find(texts, path.extension().string()) != texts.end();
 }
 
-void check_result_files(const ResultChoice& choice) {
+void check_result_files(const ResultChoice& choice, const std::vector<std::filesystem::path>& sources,
+                        const std::vector<std::filesystem::path>& others) {
+    std::vector<std::filesystem::path> files, outputs = choice.out;
+    for (const std::filesystem::path& source : sources) files.push_back(bone::file_of_bone(source));
+    outputs.insert(outputs.end(), others.begin(), others.end());
+    file::check_outputs(files, outputs);
     const bool has_figure = choice.has_figure != ResultFigure::none;
     for (const std::filesystem::path& out : choice.out) {
         const std::string ending = out.extension().string();
@@ -110,6 +117,14 @@ void check_result_files(const ResultChoice& choice) {
         if (!is_image && std::ranges::find(texts, ending) == texts.end())
             throw Error(fmt::format("{}: a result is written as {}{}", out.string(), endings_of(choice),
                                     has_figure ? ", a figure as .svg or .png" : ""));
+    }
+}
+
+void draw_pictures(report::Result& result, const ResultChoice& choice) {
+    try {
+        report::settle_pictures(result, choice.shows_figures());
+    } catch (const Error& error) {
+        throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
     }
 }
 

@@ -41,8 +41,15 @@ Option add_result_options(VerbOptions& verb, ResultChoice& choice, ResultFigure 
 /// Whether `path` has the ending of a format of results or figures.
 bool is_result_file(const std::filesystem::path& path);
 
-/// Throws Error for a file whose ending no format has, and for a figure if there is none; call before the analysis.
-void check_result_files(const ResultChoice& choice);
+/// Throws Error for a file whose ending no format has, for a figure if there is none, and for what file::check_outputs
+/// refuses. `sources`: the files that the verb reads or changes, of bones with or without "#NAME"; `others`: files that it writes besides those of -o. Called
+/// before anything is read or changed.
+void check_result_files(const ResultChoice& choice, const std::vector<std::filesystem::path>& sources,
+                        const std::vector<std::filesystem::path>& others = {});
+
+/// Draws what the files show, so that nothing is written when that fails; what was analysed need not live any longer, if
+/// the result has no series. Throws Error.
+void draw_pictures(report::Result& result, const ResultChoice& choice);
 
 /// Writes the files but the product. Throws Error if one cannot be written.
 void write_files(const report::Result& result, const ResultChoice& choice);

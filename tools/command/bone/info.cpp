@@ -28,7 +28,7 @@ std::filesystem::path picture_in(const std::filesystem::path& out, const std::fi
 int info(const InfoChoice& given) {
     ResultChoice choice = given.result;
     for (std::filesystem::path& out : choice.out) out = picture_in(out, given.input);
-    check_result_files(choice);
+    check_result_files(choice, {given.input});
     const analysis::Inspection found = analysis::inspect(given.input, given.how);
     const std::vector<std::filesystem::path> pictures = choice.products();
     for (const std::filesystem::path& picture : pictures) report::write_picture(found, picture);

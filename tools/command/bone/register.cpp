@@ -19,7 +19,7 @@ struct RegisterChoice {
 };
 
 int register_surfaces(const RegisterChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, {choice.settings.moving, choice.settings.fixed});
     analysis::RegisterSettings settings = choice.settings;
     settings.away = choice.away * 1e-3;
     settings.gap = choice.gap * 1e-3;

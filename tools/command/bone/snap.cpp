@@ -61,7 +61,10 @@ analysis::SnapSettings settings_of(const SnapChoice& choice) {
 }
 
 int snap(const SnapChoice& choice) {
-    check_result_files(choice.result);
+    const std::string& paint = choice.paint;
+    const std::size_t comma = std::min(paint.find(','), paint.size());
+    check_result_files(choice.result, {choice.settings.moving, choice.settings.fixed, paint.substr(0, comma),
+                                       paint.substr(std::min(comma + 1, paint.size()))});
     if (bone::name_one_bone(choice.settings.moving, choice.settings.fixed))
         throw Error(fmt::format("{}: a fragment cannot be fitted to itself; name two fragments",
                                 choice.settings.moving.string()));

@@ -78,7 +78,7 @@ int follow(const VesselChoice& given) {
     analysis::VesselSettings& settings = choice.settings;
     settings.seed = parse_place(choice.seed, "--seed");
     settings.leg = leg_of(choice);
-    check_result_files(choice.result);
+    check_result_files(choice.result, {settings.scan}, {choice.straightened});
     settings.out = choice.result.products();
     settings.track.min_radius = choice.min_mm * 1e-3;
     settings.track.max_radius = choice.max_mm * 1e-3;

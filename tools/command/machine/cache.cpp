@@ -18,7 +18,7 @@ struct CacheChoice {
 };
 
 int show_cache(const CacheChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, {});
     const report::ShownCache shown{file::root_of_cache().string(),
                                    choice.clear ? file::clear_cache() : file::cache_content(), file::cache_limit()};
     write_result((choice.clear ? report::cleared_cache_fields() : report::cache_fields()).of(shown), choice.result);

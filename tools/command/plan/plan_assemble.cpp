@@ -17,12 +17,8 @@ namespace {
 
 /// Adds a step for each fragment that is placed; the caller saves the plan.
 void add_steps(plan::CasePlan& plan, const analysis::PlanAssembly& made) {
-    const std::string now = plan::time_of_day();
-    for (const analysis::PlanMatch& placed : made.placed) {
-        using Outcome = plan::PlanHistory::Outcome;
-        const Outcome outcome = plan::change(plan, analysis::settling(placed.match), {.by = "assemble", .time = now});
-        if (outcome != Outcome::done) throw Error(std::string(plan::text_of(outcome)));
-    }
+    for (const analysis::PlanMatch& placed : made.placed)
+        analysis::apply_command(plan, analysis::settling(placed.match), {.by = "assemble"});
 }
 
 /// Why a fragment stays.
@@ -48,7 +44,7 @@ std::vector<std::string> part_of(const plan::CasePlan& plan, const analysis::Pla
 }
 
 int assemble(const PlanChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice);
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const plan::PlanState before = plan::state_of(plan);

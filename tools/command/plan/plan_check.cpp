@@ -12,7 +12,7 @@ namespace tactus::command {
 namespace {
 
 int check(const PlanChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice);
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     const std::filesystem::path folder = choice.plan.parent_path();
     const report::ShownPlan checked{plan, plan::state_of(plan), analysis::case_warnings(plan, folder),

@@ -12,7 +12,7 @@ namespace tactus::command {
 namespace {
 
 int gap(const PlanChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice);
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     if (!choice.names.empty() && (choice.names.size() != 2 || choice.names[0] == choice.names[1]))
         throw Error("'plan gap' needs two different fragments, or none");

@@ -61,7 +61,7 @@ std::vector<report::ComparedFragment> compare_others(plan::CasePlan& plan, analy
 }
 
 int mirror(const MirrorChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice, {choice.healthy});
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();

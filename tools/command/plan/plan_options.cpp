@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/plan/plan_options.hpp"
 
+#include "assets/plan/plan_file.hpp"
+
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace tactus::command {
@@ -10,9 +14,9 @@ void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
     verb.flag("--json", choice.result.json, "as JSON");
 }
 
-void add_plan_report_options(VerbOptions& verb, PlanChoice& choice, Product product) {
+Option add_plan_report_options(VerbOptions& verb, PlanChoice& choice, Product product) {
     verb.add("plan", choice.plan, "plan file, JSON").required();
-    add_result_options(verb, choice.result, ResultFigure::none, std::move(product));
+    return add_result_options(verb, choice.result, ResultFigure::none, std::move(product));
 }
 
 void add_fit_options(VerbOptions& verb, PlanChoice& choice) {
@@ -22,6 +26,17 @@ void add_fit_options(VerbOptions& verb, PlanChoice& choice) {
         .range(0.0, 4.0);
     verb.flag("--healthy", choice.with_healthy,
               "fit to the healthy side of 'plan mirror' too: it decides where the faces slide on each other");
+}
+
+void check_plan_results(const PlanChoice& choice, std::vector<std::filesystem::path> sources,
+                        const std::vector<std::filesystem::path>& others) {
+    const bool writes = !choice.result.out.empty() || !std::ranges::all_of(others, &std::filesystem::path::empty);
+    if (writes) {
+        std::ranges::move(plan::files_of(plan::load_case_plan(choice.plan), choice.plan.parent_path()),
+                          std::back_inserter(sources));
+        sources.push_back(choice.plan);
+    }
+    check_result_files(choice.result, sources, others);
 }
 
 analysis::FitWay fit_way(const PlanChoice& choice) {

@@ -25,10 +25,15 @@ struct PlanChoice {
 
 /// The plan and --json, for the verbs that change it.
 void add_plan_options(VerbOptions& verb, PlanChoice& choice);
-/// The plan and the options of results, for the verbs that report. `product`: files that the verb makes besides.
-void add_plan_report_options(VerbOptions& verb, PlanChoice& choice, Product product = {});
+/// The plan and the options of results, for the verbs that report; returns -o. `product`: files that the verb makes
+/// besides.
+Option add_plan_report_options(VerbOptions& verb, PlanChoice& choice, Product product = {});
 /// --kerf and --healthy, for the verbs that fit.
 void add_fit_options(VerbOptions& verb, PlanChoice& choice);
+/// Checks the files of -o before the plan is opened for a change: see check_result_files. The plan and its files are
+/// sources, besides `sources`. Throws Error.
+void check_plan_results(const PlanChoice& choice, std::vector<std::filesystem::path> sources = {},
+                        const std::vector<std::filesystem::path>& others = {});
 analysis::FitWay fit_way(const PlanChoice& choice);
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about);
 

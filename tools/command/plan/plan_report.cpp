@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan report: the plan as an HTML page, or in another format of results.
 #include "assets/file/json.hpp"
-#include "assets/file/outputs.hpp"
 #include "assets/plan/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/command/progress.hpp"
 #include "tools/report/plan/plan_result.hpp"
+#include "tools/report/result/printers.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -26,50 +26,67 @@ std::filesystem::path page_of(const std::filesystem::path& plan) {
     return plan.parent_path() / (stem + ".html");
 }
 
-int report(const PlanChoice& choice) {
+struct ReportChoice : PlanChoice {
+    std::filesystem::path pdf;  // old spelling: the report as a PDF file too
+};
+
+using Names = std::vector<std::string>;
+
+const report::Fields<Names>& written_fields() {
+    static const report::Fields<Names> all =
+        report::Fields<Names>("reports that were written").texts("reports", "", [](const Names& names) {
+            return names;
+        });
+    return all;
+}
+
+int report(const ReportChoice& choice) {
     ResultChoice files = choice.result;
     if (files.out.empty()) files.out.push_back(page_of(choice.plan));
+    if (!choice.pdf.empty()) files.out.push_back(choice.pdf);
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<std::filesystem::path> sources = plan::files_of(plan, folder);
     sources.push_back(choice.plan);
-    file::check_outputs(sources, files.out);
-    check_result_files(files);
+    check_result_files(files, sources);
+    for (const std::filesystem::path& out : files.out)
+        if (const std::string ending = out.extension().string(); ending == ".json" || ending == ".csv")
+            throw Error(fmt::format(
+                "{}: a report is written as .html, .pdf or .txt; 'tactus plan show', 'gap' and 'reach' write values as "
+                "{}",
+                out.string(), ending));
     Progress progress(files.quiet);
     const report::ShownPlan shown = report::ShownPlan::reported(
         plan, folder, [&progress](double done, std::string_view doing) { progress.show(done, doing); });
     for (const std::string& note : shown.warnings.notes) fmt::print(stderr, "note: {}\n", note);
     report::Result result = report::plan_fields().of(shown);
-    try {
-        report::settle_pictures(result, files.shows_figures());
-    } catch (const Error& error) {
-        throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
-    }
+    draw_pictures(result, files);
     progress.clear();
     write_files(result, files);
     if (files.quiet) return done;
-    if (files.json) {
-        std::vector<std::string> names;
-        for (const std::filesystem::path& out : files.out) names.push_back(out.string());
-        say(stdout, file::Json{{"reports", names}}.dump(2) + "\n");
-    } else {
-        for (const std::filesystem::path& out : files.out) say(stdout, out.string() + "\n");
-    }
+    Names names;
+    for (const std::filesystem::path& out : files.out) names.push_back(out.string());
+    if (files.json) say(stdout, report::output_json(written_fields().of(names)).dump(2) + "\n");
+    else
+        for (const std::string& name : names) say(stdout, name + "\n");
     return done;
 }
 
 Action declare_plan_report(VerbOptions& verb) {
-    const auto choice = std::make_shared<PlanChoice>();
-    add_plan_report_options(verb, *choice);
-    verb.old("--pdf", "--out");
+    const auto choice = std::make_shared<ReportChoice>();
+    add_plan_report_options(verb, *choice)
+        .about("file for the report, by its ending: .html, .pdf or .txt; repeatable (default: .html, beside the plan)");
+    verb.add("--pdf", choice->pdf, "write the report as a PDF file too").hidden();
     return [choice] { return report(*choice); };
 }
 
 }  // namespace
 
 Verb plan_report_verb() {
-    return {"report", "write an HTML page, or a PDF file, with warnings, fits, pictures, gaps and the order of steps",
-            declare_plan_report};
+    return {.name = "report",
+            .about = "write an HTML page, or a PDF file, with warnings, fits, pictures, gaps and the order of steps",
+            .add = declare_plan_report,
+            .schema = [] { return report::schema_of_output({written_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

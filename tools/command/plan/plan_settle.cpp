@@ -37,7 +37,7 @@ std::vector<int> settled_fragments(const plan::CasePlan& plan, const std::vector
 
 int settle(const SettleChoice& choice) {
     constexpr int max_rounds = 4;
-    check_result_files(choice.result);
+    check_plan_results(choice);
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const std::vector<int> numbers = settled_fragments(plan, choice.names);

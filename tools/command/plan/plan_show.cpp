@@ -8,7 +8,7 @@
 namespace tactus::command {
 
 int show_plan(const PlanChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice);
     const report::ShownPlan shown = report::ShownPlan::of(plan::load_case_plan(choice.plan), choice.plan.parent_path());
     write_result(report::plan_fields().of(shown), choice.result);
     return done;

@@ -18,7 +18,7 @@ struct SnapChoice : PlanChoice {
 };
 
 int snap_fragment(const SnapChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice);
     analysis::OpenPlan open(choice.plan);
     plan::CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();

@@ -24,7 +24,7 @@ int list_cuts(const CutsChoice& choice) {
 }
 
 int derive_cuts(const CutsChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice);
     if (!choice.from_pieces) return list_cuts(choice);
     const analysis::CutsOfPieces found = analysis::cut_as_placed(choice.plan, choice.alternative);
     write_result(report::derived_cuts_fields().of({choice.plan.string(), choice.alternative, &found}), choice.result);

@@ -19,7 +19,7 @@ struct FibulaChoice {
 };
 
 int fibula(const FibulaChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, {choice.inputs});
     const reconstruction::FibulaInputs inputs = reconstruction::read_fibula_inputs(choice.inputs);
     const reconstruction::FibulaPlan plan = reconstruction::plan_fibula(inputs);
     write_result(report::fibula_fields().of({&inputs, &plan}), choice.result);

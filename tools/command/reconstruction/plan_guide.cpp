@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan guide: a printed guide for the cuts of a plan, as STL or 3MF.
 #include "assets/bone/bone.hpp"
-#include "assets/file/outputs.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/plan/plan_file.hpp"
@@ -57,19 +56,17 @@ std::filesystem::path beside_task(const std::filesystem::path& task, const char*
 int make_guide(const GuideOptions& options) {
     if (!options.task.empty() && options.task.extension() != ".toml")
         throw Error(fmt::format("{}: a task is written as .toml", options.task.string()));
-    check_result_files(options.result);
+    const std::filesystem::path bone = beside_task(options.task, "bone"), body = beside_task(options.task, "guide");
+    check_plan_results(options, {}, {options.task, bone, body});
     const std::vector<std::filesystem::path> meshes = options.result.products();
     if (meshes.empty()) throw Error("a guide is written as .stl, .3mf or .ply: -o GUIDE.stl");
     const plan::CasePlan plan = plan::load_case_plan(options.plan);
     const std::filesystem::path folder = options.plan.parent_path();
-    std::vector<std::filesystem::path> sources = plan::files_of(plan, folder);
-    sources.push_back(options.plan);
-    const std::filesystem::path bone = beside_task(options.task, "bone"), body = beside_task(options.task, "guide");
-    std::vector<std::filesystem::path> outputs = options.result.out;
-    outputs.insert(outputs.end(), {options.task, bone, body});
-    file::check_outputs(sources, outputs);
     const analysis::FlapStudy study(plan, plan::state_of(plan), folder);
     const analysis::PlannedGuide guide = analysis::plan_guide(study, plan.title, choice_of(options, study));
+    report::Result result =
+        report::guide_fields().of({&guide, plan.title, meshes.front().string(), options.task.string()});
+    draw_pictures(result, options.result);
     if (!options.task.empty()) {
         const analysis::GuideTask task = analysis::guide_task(guide, plan.title, bone.filename(), body.filename());
         bone::save_bone(task.bone, bone);
@@ -78,14 +75,13 @@ int make_guide(const GuideOptions& options) {
     }
     for (const std::filesystem::path& out : meshes)
         mesh::write_mesh(std::array{mesh::ColouredSurface{guide.made.surface, Vec3(0.35, 0.62, 0.72)}}, out);
-    write_result(report::guide_fields().of({&guide, plan.title, meshes.front().string(), options.task.string()}),
-                 options.result);
+    write_result(result, options.result);
     return done;
 }
 
 Action declare_plan_guide(VerbOptions& verb) {
     const auto o = std::make_shared<GuideOptions>();
-    add_plan_report_options(verb, *o, {{".stl", ".3mf", ".ply"}, "the guide, mm, LPS"});
+    add_plan_report_options(verb, *o, {{".stl", ".3mf", ".ply"}, "the guide, mm, LPS"}).required();
     verb.old("--report", "--out");
     verb.add("--task", o->task,
              "TOML file: a task for 'tactus session', to saw in the guide; its bones are written beside it");

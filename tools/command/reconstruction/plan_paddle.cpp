@@ -63,7 +63,7 @@ void place(const PaddleChoice& choice) {
 }
 
 int paddle(const PaddleChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice, {choice.defect}, {choice.picture});
     if (choice.defect.empty() && (!choice.result.out.empty() || !choice.picture.empty()))
         throw Error("-o and --picture are about the draped paddle; give --defect CURVE.mrk.json, too");
     if (choice.remove && (!choice.defect.empty() || !choice.at.empty() || choice.length || choice.width))

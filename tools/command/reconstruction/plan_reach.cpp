@@ -25,9 +25,12 @@ struct ReachChoice : PlanChoice {
 };
 
 int take(const ReachChoice& choice) {
+    if (!choice.result.out.empty())
+        throw Error("--take makes an alternative of the plan and measures nothing to write; give -o without it");
     const std::string name = choice.alternative.empty() ? fmt::format("candidate-{}", choice.take) : choice.alternative;
     const analysis::TakenCandidate taken =
         analysis::take_candidate(choice.plan, static_cast<std::size_t>(choice.take), name);
+    if (choice.result.quiet) return done;
     if (choice.result.json) return show_change(choice);
     fmt::print("{}: alternative '{}': {}\n", choice.plan.string(), name, analysis::candidate_words(taken.candidate));
     for (const analysis::CaseWarning& w : analysis::warnings_of(taken.candidate.plan, taken.candidate.measures))
@@ -37,7 +40,7 @@ int take(const ReachChoice& choice) {
 }
 
 int reach(const ReachChoice& choice) {
-    check_result_files(choice.result);
+    check_plan_results(choice);
     if (choice.take > 0) return take(choice);
     if (!choice.alternative.empty()) throw Error("--alternative names what --take makes; give --take N, too");
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);

@@ -43,7 +43,7 @@ std::function<DeviceInfo(const std::string&)> devices_of(const io::EngineHost& h
 }
 
 /// Of each device that a node drives, as an ideal one, and of the simulated devices.
-std::vector<analysis::ZWidthCurve> z_width_of(const io::EngineHost& host) {
+std::vector<analysis::ZWidthCurve> z_width_of(const io::EngineHost& host, bool is_quiet) {
     analysis::ZWidthGrid grid;
     std::vector<analysis::ZWidthDevice> devices;
     for (const auto& slot : host.devices) {
@@ -54,7 +54,7 @@ std::vector<analysis::ZWidthCurve> z_width_of(const io::EngineHost& host) {
     }
     std::ranges::sort(grid.rates);
     for (analysis::ZWidthDevice& device : analysis::modelled_devices()) devices.push_back(std::move(device));
-    Progress shown;
+    Progress shown(is_quiet);
     return analysis::z_width(devices, grid, [&shown](std::size_t done, std::size_t all) {
         shown.show(static_cast<double>(done) / static_cast<double>(all), fmt::format("{} of {} walls", done, all));
     });
@@ -90,14 +90,14 @@ void check_prepared(const CheckChoice& choice, compile::Schedule plan, compile::
             "'{}' shapes a force by a law that check cannot judge; keep its slope below what the path may feel", node));
     found.sound = analysis::checked_sound(engine.plan());
     found.outputs = analysis::checked_outputs(engine.nodes(), loops, found.warnings);
-    if (choice.z_width) found.z_width = z_width_of(engine.host());
+    if (choice.z_width) found.z_width = z_width_of(engine.host(), choice.result.quiet);
     found.is_prepared = true;
 }
 
 int check(const CheckChoice& choice) {
     ResultChoice result = choice.result;
     if (!choice.z_width) result.has_figure = ResultFigure::none;
-    check_result_files(result);
+    check_result_files(result, {choice.patch.patch});
     patch::Problems problems;
     compile::AssetCache assets;
     analysis::PatchCheck found;

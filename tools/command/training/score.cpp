@@ -32,7 +32,7 @@ std::vector<analysis::ScoredRun> scored(const std::vector<fs::path>& folders, co
 }
 
 int score(const ScoreChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, {choice.task}, {choice.csv});
     const std::vector<analysis::ScoredRun> runs = scored(choice.runs, choice.task);
     const std::vector<analysis::ScoredRun> others = scored(choice.reference, choice.task);
     for (const analysis::ScoredRun& other : others)

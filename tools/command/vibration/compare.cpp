@@ -74,7 +74,6 @@ int compare_one(const CompareChoice& choice, const analysis::CompareSettings& se
 
 int compare_many(const CompareChoice& choice, const analysis::CompareSettings& settings) {
     const std::vector<analysis::PairedFiles> names = analysis::paired_files(settings.reference, settings.output);
-    if (!choice.plot.empty()) fs::create_directories(choice.plot);
     std::vector<ComparedPair> pairs(names.size());
     const std::vector<std::string> failures = run_batch(
         names.size(), choice.jobs, "pairs",
@@ -101,7 +100,10 @@ int compare_many(const CompareChoice& choice, const analysis::CompareSettings& s
 }
 
 int compare(const CompareChoice& choice) {
-    check_result_files(choice.result);
+    const bool many = fs::is_directory(choice.settings.reference) || fs::is_directory(choice.settings.output);
+    // Before the check of -o, which may be in it.
+    if (many && !choice.plot.empty()) fs::create_directories(choice.plot);
+    check_result_files(choice.result, {choice.settings.reference, choice.settings.output, choice.thresholds});
     analysis::CompareSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = analysis::touch_of(choice.touch);
@@ -110,9 +112,7 @@ int compare(const CompareChoice& choice) {
     settings.stretches = {stretch_of(choice.stretch, 0), stretch_of(choice.stretch, 1)};
     if (!choice.band.empty()) settings.plotted = parse_band(choice.band, "--band");
     settings.pictures = !choice.plot.empty() || choice.result.shows_figures();
-    if (fs::is_directory(settings.reference) || fs::is_directory(settings.output))
-        return compare_many(choice, settings);
-    return compare_one(choice, settings);
+    return many ? compare_many(choice, settings) : compare_one(choice, settings);
 }
 
 Action declare_compare(VerbOptions& verb) {

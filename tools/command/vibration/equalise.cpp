@@ -25,7 +25,7 @@ struct EqualiseChoice {
 };
 
 int equalise(const EqualiseChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, {choice.settings.response, choice.settings.signal});
     const std::vector<std::filesystem::path> files = choice.result.products();
     if (files.empty()) throw Error("name a .toml file for the filter with -o");
     analysis::EqualiseSettings settings = choice.settings;

@@ -168,7 +168,7 @@ int body_exposure(const ExposureChoice& choice, const std::vector<fs::path>& fil
 }
 
 int exposure(const ExposureChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, choice.files);
     const std::vector<fs::path> files = analysis::expand_folders(choice.files);
     return choice.body == "hand" ? hand_exposure(choice, files) : body_exposure(choice, files);
 }

@@ -28,7 +28,7 @@ struct MeasureChoice {
 };
 
 int measure(const MeasureChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, {choice.settings.patch.patch}, {choice.equaliser});
     Progress progress(choice.result.quiet);
     const analysis::Measurement found =
         analysis::measure(choice.settings, [&](double share) { progress.show(share, "of the sweep"); });

@@ -24,7 +24,7 @@ struct ModelChoice {
 };
 
 int model(const ModelChoice& choice) {
-    check_result_files(choice.result);
+    check_result_files(choice.result, {choice.settings.recordings});
     const std::vector<std::filesystem::path> files = choice.result.products();
     if (files.empty()) throw Error("name a .toml file for the model with -o");
     analysis::SawModelSettings settings = choice.settings;

@@ -95,7 +95,9 @@ int orders(const OrdersChoice& choice) {
     settings.waterfall = waterfall_of(choice);
     ResultChoice result = choice.result;
     if (!settings.waterfall) result.has_figure = ResultFigure::none;
-    check_result_files(result);
+    std::vector<std::filesystem::path> others = choice.waterfalls;
+    others.push_back(choice.csv);
+    check_result_files(result, choice.files, others);
     const analysis::Orders found = analysis::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
     for (const std::filesystem::path& out : choice.waterfalls)

@@ -70,7 +70,7 @@ int response(const ResponseChoice& choice) {
                                                     : analysis::Estimator::h1;
     settings.segment = choice.segment;
     settings.overlap = choice.overlap.value_or(0.5);
-    check_result_files(choice.result);
+    check_result_files(choice.result, choice.files, {choice.csv});
     const analysis::TwoChannels found = analysis::analyse_two_channels(file, settings, {});
     for (const std::filesystem::path& out : choice.result.products()) save(found, file.filename().string(), out);
     if (!choice.csv.empty()) file::write_whole_file(choice.csv, csv_of(found));

@@ -136,7 +136,6 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, const report
 }
 
 int spectrum(const SpectrumChoice& choice) {
-    check_result_files(choice.result);
     const std::vector<fs::path> files = analysis::expand_folders(choice.files);
     const bool many = files.size() > 1;
     settings_of(choice, false);  // refuses what cannot be read, before the files are
@@ -145,6 +144,7 @@ int spectrum(const SpectrumChoice& choice) {
         for (const fs::path& folder : {choice.csv, choice.plot, choice.cepstrum})
             if (!folder.empty() && !(folder == choice.plot && report::is_figure_file(folder)))
                 fs::create_directories(folder);
+    check_result_files(choice.result, choice.files);
     std::vector<Outcome> outcomes(files.size());
     const std::vector<std::string> failures = run_batch(
         files.size(), choice.jobs, "files",

@@ -49,14 +49,15 @@ void choose_stretch(const StretchChoice& choice, analysis::ValidateSettings& set
 }
 
 int validate(const ValidateChoice& choice) {
-    check_result_files(choice.result);
+    // Before the check of -o, which may be in it.
+    if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
+    check_result_files(choice.result, {choice.settings.set, choice.thresholds});
     analysis::ValidateSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = analysis::touch_of(choice.touch);
     choose_stretch(choice.stretch, settings);
     Validation validation = analysis::plan_validation(settings);
     const bool pictures = choice.result.shows_figures() || !choice.plot.empty();
-    if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
     const std::vector<std::string> failures = run_batch(
         validation.runs.size(), choice.jobs, "runs",
         [&](std::size_t i,

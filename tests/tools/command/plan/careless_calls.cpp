@@ -82,3 +82,63 @@ TEST_CASE("a healthy side in metres that states no unit is refused, and one that
     CHECK_THAT(median("said.stl"), ContainsSubstring("mirrored side on a"));
     CHECK(median("said.stl") == median("mm.stl"));
 }
+
+TEST_CASE("no result is written over what its verb reads, and nothing changes when a result cannot be written") {
+    const TwoBoxes boxes;
+    const std::string before = slurp(boxes.plan), bone = slurp(boxes.folder.path / "a.stl");
+    for (const char* name : {"inputs.json", "defect.mrk.json"}) boxes.folder.write(name, "{}");
+    const std::vector<std::string> of_plan{
+        "show",  "check",  "gap",  "snap", "settle", "assemble", "mirror", "cuts", "cuts --from-pieces",
+        "reach", "paddle", "guide"};
+    const auto call = [&](const std::string& verb) {
+        const std::string more = verb == "snap"     ? " a b"
+                                 : verb == "mirror" ? " " + boxes.file("b.stl") + " a"
+                                 : verb == "paddle" ? " --defect " + boxes.file("defect.mrk.json")
+                                                    : "";
+        return "plan " + verb + " " + boxes.plan + more + " -o ";
+    };
+    for (const std::string& verb : of_plan) {
+        boxes.is_refused(call(verb) + boxes.plan, "this is a source");
+        boxes.is_refused(call(verb) + boxes.file("a.stl"), "this is a source");
+        boxes.is_refused(call(verb) + boxes.file("nowhere/x.json"), "there is no folder");
+    }
+    boxes.is_refused(call("mirror") + boxes.file("b.stl"), "this is a source");
+    boxes.is_refused(call("paddle") + boxes.file("defect.mrk.json"), "this is a source");
+    boxes.is_refused("plan fibula " + boxes.file("inputs.json") + " -o " + boxes.file("inputs.json"),
+                     "this is a source");
+    const std::string two = boxes.file("a.stl") + " " + boxes.file("b.stl") + " -o " + boxes.file("a.stl");
+    for (const char* verb : {"register ", "snap "}) boxes.is_refused(verb + two, "this is a source");
+    for (const char* verb : {"info ", "vessel --seed 0,0,0 "})
+        boxes.is_refused(verb + boxes.file("a.stl") + " -o " + boxes.file("a.stl"), "this is a source");
+    CHECK(slurp(boxes.plan) == before);
+    CHECK(slurp(boxes.folder.path / "a.stl") == bone);
+    CHECK(slurp(boxes.folder.path / "inputs.json") == "{}");
+}
+
+TEST_CASE("a fragment that cannot be moved is named") {
+    const TwoBoxes boxes;
+    REQUIRE(boxes.folder.tactus("plan lock " + boxes.plan + " a").code == 0);
+    boxes.is_refused("plan move " + boxes.plan + " a --pose 1,0,0,1,0,0,0", "'a' cannot be moved: ");
+}
+
+TEST_CASE("plan reach --take writes no measures, and a report no values") {
+    const TwoBoxes boxes;
+    boxes.is_refused("plan reach " + boxes.plan + " --take 1 -o " + boxes.file("x.json"), "give -o without it");
+    boxes.is_refused("plan report " + boxes.plan + " -o " + boxes.file("x.json"), "'tactus plan show', 'gap'");
+    boxes.is_refused("plan guide " + boxes.plan, "--out is required");
+    CHECK(!fs::exists(boxes.file("x.json")));
+}
+
+TEST_CASE("plan report --pdf, an old spelling, writes the page beside the plan too", "[slow]") {
+    const TwoBoxes boxes;
+    const Outcome made = boxes.folder.tactus("plan report " + boxes.plan + " --json --pdf " + boxes.file("x.pdf"));
+    INFO(made.err);
+    CHECK(made.code == 0);
+    CHECK(fs::exists(boxes.file("case.html")));
+    CHECK(fs::exists(boxes.file("x.pdf")));
+    CHECK_THAT(made.out, ContainsSubstring("\"version\": 1"));
+    const std::string page = slurp(boxes.file("case.html"));
+    const auto first = page.find("Gaps and overlaps");
+    if (first != std::string::npos) CHECK(page.find("Gaps and overlaps", first + 1) == std::string::npos);
+    CHECK_THAT(page, ContainsSubstring("there are no steps"));
+}
