@@ -67,6 +67,18 @@ cases_of() {
     ctest --test-dir "build/$1" -N -L "$2" | sed -nE 's/^ *Test +#([0-9]+): (.*)/\1\t\2/p'
 }
 
+# has_cases PRESET LABEL...: each label has a case; several in one expression would hide one that has none any more.
+has_cases() {
+    local preset=$1 label status=0
+    shift
+    for label in "$@"; do
+        [ -z "$(cases_of "$preset" "^$label\$")" ] || continue
+        echo "dev: no test has the label '$label' (tests/CMakeLists.txt)" >&2
+        status=1
+    done
+    return $status
+}
+
 # The numbers of the long cases that run on this landing, separated by commas, in an order that the hash of the tree chooses:
 # up to slice_seconds of the rooms that differ from the published branch, and up to slice_seconds of the others.
 slice() {
@@ -94,6 +106,7 @@ landing() {
     local preset=$1 status=0 chosen
     phase "build: product" build "$preset" tactus bundled_library
     phase "build: tests" build "$preset"
+    has_cases "$preset" fast slow display kernel live || status=1
     phase "tests: fast" run_ctest "$preset" "$(jobs)" -L '^fast$' || status=1
     # Cases with windows and processes wait most of their time; beside them the slow ones use the processors.
     phase "tests: slow, display, kernel" run_ctest "$preset" "$(($(jobs) * 2))" -L '^(slow|display|kernel)$' || status=1

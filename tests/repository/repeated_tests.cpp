@@ -48,9 +48,9 @@ public:
     }
 
     /// The exit code of './dev test'.
-    int test() {
+    int test(const std::string& without = {}) {
         for (const char* label : {"fast", "slow", "display", "kernel", "live"})
-            add(std::string("some_") + label, label, 0);
+            if (label != without) add(std::string("some_") + label, label, 0);
         folder_.write("build/release/CTestTestfile.cmake", tests_);
         const std::string line =
             "PATH='" + path("bin") + "':\"$PATH\" bash '" + path("dev") + "' test >'" + path("out") + "' 2>&1";
@@ -108,6 +108,14 @@ TEST_CASE("a case in real time that fails twice fails the landing", "[slow]") {
     CHECK(code == 1);
     CHECK(checkout.runs_of("never") == ".w.");
     CHECK(checkout.runs_of("early") == ".");
+}
+
+TEST_CASE("a landing fails that has no case of one label", "[slow]") {
+    Checkout checkout;
+    const int code = checkout.test("display");
+    INFO(checkout.printed());
+    CHECK(code == 1);
+    CHECK(checkout.printed().find("no test has the label 'display'") != std::string::npos);
 }
 
 TEST_CASE("no case runs again that is not in real time", "[slow]") {

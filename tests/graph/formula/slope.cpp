@@ -66,7 +66,7 @@ TEST_CASE("a jump has no slope, unless it cannot happen") {
     CHECK(bounds("if(y > 0, 3 * x, 7 * x)", "x, y")[1] == infinite);
 }
 
-TEST_CASE("no slope between two points of any formula is above its bound", "[slow]") {
+TEST_CASE("no slope between two points of any formula is above its bound", "[long]") {
     const Random random{99};
     std::uint64_t draws = 0;
     const auto pick = [&](int n) { return static_cast<int>(random.uniform(draws++) * n); };
