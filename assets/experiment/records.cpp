@@ -144,10 +144,11 @@ ExperimentFile load_experiment_file(const fs::path& path) {
                                            one["complete"].get<bool>(),
                                            one["registration"].get<std::string>(),
                                            {}});
-            // Folders of before settings were stored have none.
-            if (const Json* settings = one.find("settings"))
-                for (const Json& setting : *settings)
-                    experiment.subjects.back().settings.push_back(setting.get<std::string>());
+            // Folders of before settings were stored do not say what they were.
+            if (const Json* settings = one.find("settings")) {
+                auto& known = experiment.subjects.back().settings.emplace();
+                for (const Json& setting : *settings) known.push_back(setting.get<std::string>());
+            }
         }
         for (const Json& one : json["freed_rows"]) experiment.freed_rows.push_back(one.get<std::size_t>());
         return experiment;
@@ -166,14 +167,13 @@ void save_experiment_file(const ExperimentFile& experiment, const fs::path& path
               {"freed_rows", experiment.freed_rows}};
     for (const FrozenFile& one : experiment.assets) json["assets"].push_back({{"name", one.name}, {"hash", one.hash}});
     for (const FrozenFile& one : experiment.files) json["files"].push_back({{"name", one.name}, {"hash", one.hash}});
-    for (const SubjectEntry& one : experiment.subjects)
-        json["subjects"].push_back({{"pseudonym", one.pseudonym},
-                                    {"row", one.row},
-                                    {"simulated", one.is_simulated},
-                                    {"consent", one.consent},
-                                    {"complete", one.is_complete},
-                                    {"registration", one.registration},
-                                    {"settings", one.settings}});
+    for (const SubjectEntry& one : experiment.subjects) {
+        Json subject{{"pseudonym", one.pseudonym},    {"row", one.row},
+                     {"simulated", one.is_simulated}, {"consent", one.consent},
+                     {"complete", one.is_complete},   {"registration", one.registration}};
+        if (one.settings) subject["settings"] = *one.settings;
+        json["subjects"].push_back(std::move(subject));
+    }
     file::write_durable_file(path, json.dump(2) + "\n");
 }
 

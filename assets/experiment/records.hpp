@@ -62,8 +62,8 @@ struct SubjectEntry {
     std::string consent;  ///< time at which consent was recorded; empty: none
     bool is_complete = false;
     std::string registration;  ///< note on the registration of the display
-    /// What the command line set for all trials of this subject: "hand.device=touch", "asset hand=file".
-    std::vector<std::string> settings;
+    /// What the command line set for all trials of this subject: "hand.device=touch", "asset hand=file". None: it was not stored.
+    std::optional<std::vector<std::string>> settings;
 };
 
 struct FrozenFile {

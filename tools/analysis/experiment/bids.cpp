@@ -42,16 +42,19 @@ void write_participants(const ExperimentAnalysis& analysis, const fs::path& fold
         rows += fmt::format("sub-{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", subject.entry.pseudonym, subject.entry.row + 1,
                             cell(subject.entry.is_simulated), cell(subject.is_rehearsal),
                             cell(subject.entry.is_complete), subject.trials, subject.marked, cell(subject.excluded),
-                            cell(fmt::format("{}", fmt::join(subject.entry.settings, "; "))));
+                            subject.entry.settings ? cell(fmt::format("{}", fmt::join(*subject.entry.settings, "; ")))
+                                                   : std::string("unknown"));
     file::write_whole_file(folder / "participants.tsv", rows);
-    const Json about{{"order_row", {{"Description", "row of the order of conditions, from 1"}}},
-                     {"simulated", yes_or_no("the subject is a model", "a person")},
-                     {"rehearsal", yes_or_no("without a haptic device or without a registered display", "with both")},
-                     {"complete", yes_or_no("the session came to its end", "it did not")},
-                     {"trials", {{"Description", "without practice"}}},
-                     {"marked", {{"Description", "trials beyond the limits of timing or force"}}},
-                     {"excluded", {{"Description", "reason by the rules of the protocol; n/a: included"}}},
-                     {"settings", {{"Description", "what the command line set for all trials; n/a: nothing"}}}};
+    const Json about{
+        {"order_row", {{"Description", "row of the order of conditions, from 1"}}},
+        {"simulated", yes_or_no("the subject is a model", "a person")},
+        {"rehearsal", yes_or_no("without a haptic device or without a registered display", "with both")},
+        {"complete", yes_or_no("the session came to its end", "it did not")},
+        {"trials", {{"Description", "without practice"}}},
+        {"marked", {{"Description", "trials beyond the limits of timing or force"}}},
+        {"excluded", {{"Description", "reason by the rules of the protocol; n/a: included"}}},
+        {"settings",
+         {{"Description", "what the command line set for all trials; n/a: nothing; unknown: it was not stored"}}}};
     file::write_whole_file(folder / "participants.json", about.dump(2) + "\n");
 }
 
@@ -136,11 +139,13 @@ void write_bids(const ExperimentAnalysis& analysis, const fs::path& folder) {
     file::write_whole_file(
         folder / ".bidsignore",
         "frozen/\nexperiment.json\nreport.html\nresults.json\nmixed/\nsub-*/trials.jsonl\nsub-*/trial-*\n");
-    file::write_whole_file(
-        folder / "README",
-        fmt::format("{}\n\n{}\n\nTables of 'tactus experiment analyse', in the layout of BIDS. A column of a "
-                    "table is described in the JSON file of the same name.\n",
-                    protocol.title, protocol.about));
+    // A laboratory may have written its own.
+    if (!fs::exists(folder / "README"))
+        file::write_whole_file(
+            folder / "README",
+            fmt::format("{}\n\n{}\n\nTables of 'tactus experiment analyse', in the layout of BIDS. A column of a "
+                        "table is described in the JSON file of the same name.\n",
+                        protocol.title, protocol.about));
     write_participants(analysis, folder);
     for (const AnalysedSubject& subject : analysis.subjects) {
         const fs::path beh = folder / ("sub-" + subject.entry.pseudonym) / "beh";

@@ -235,7 +235,7 @@ SubjectEntry ExperimentFolder::enrol(const std::string& pseudonym, bool is_simul
                                     found->is_simulated ? "simulated" : "real", folder_.string()));
         return *found;
     }
-    const SubjectEntry entry{pseudonym, row_of(pseudonym), is_simulated, {}, false, {}, {}};
+    const SubjectEntry entry{pseudonym, row_of(pseudonym), is_simulated, {}, false, {}, std::vector<std::string>()};
     std::erase(file_.freed_rows, entry.row);
     file_.subjects.push_back(entry);
     save();

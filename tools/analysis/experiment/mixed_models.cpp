@@ -144,8 +144,11 @@ constexpr const char* script_head =
 # the mean over their levels. Subjects differ in level, and in the effect where they have several values for each level.
 suppressPackageStartupMessages(library(lmerTest))
 options(contrasts = c("contr.sum", "contr.poly"))
-data <- read.delim("data.tsv", colClasses = c(subject = "factor", period = "factor"), na.strings = "NA",
-                   check.names = FALSE, quote = "", comment.char = "")
+# Levels are text, also those that look like numbers.
+data <- read.delim("data.tsv", colClasses = "character", na.strings = "NA", check.names = FALSE, quote = "", comment.char = "")
+data$value <- as.numeric(data$value)
+data$subject <- factor(data$subject)
+data$period <- factor(data$period)
 number <- function(x) if (length(x) == 1 && is.finite(x)) format(x, digits = 17) else "NA"
 cat("values\testimate\tlow\thigh\tp\tdf\tsubject\tslope\tresidual\tformula\tnote\n", file = "models.tsv")
 fit <- function(rows, a, b, level, before, fixed) {
@@ -153,18 +156,26 @@ fit <- function(rows, a, b, level, before, fixed) {
   rows$effect <- ifelse(rows[[level]] == b, 0.5, -0.5)
   rows$before <- ifelse(rows[[before]] == b, 0.5, ifelse(rows[[before]] == a, -0.5, 0))
   rows <- droplevels(rows)
-  note <- ""
+  notes <- character()
   if (nlevels(rows$period) < 2) fixed <- sub(" + period", "", fixed, fixed = TRUE)
   # One value for each level cannot separate the subject's own effect from the residual.
   several <- all(table(rows$subject, rows$effect) > 1)
   random <- if (several) "(1 | subject) + (0 + effect | subject)" else "(1 | subject)"
   formula <- paste("value ~", fixed, "+", random)
   result <- rep("NA", 8)
-  tryCatch({
+  tryCatch(withCallingHandlers({
+    # lme4 leaves out columns that others determine, and says so only in a message.
+    columns <- model.matrix(as.formula(paste("~", fixed)), rows)
+    others <- lm.fit(columns[, colnames(columns) != "effect", drop = FALSE], columns[, "effect"])
+    if (all(abs(others$residuals) < 1e-9)) {
+      same <- names(which(abs(others$coefficients) > 1e-9))
+      stop("the orders do not separate the effect from ", paste(setdiff(same, "(Intercept)"), collapse = ", "))
+    }
     model <- suppressMessages(lmer(as.formula(formula), rows, REML = TRUE))
-    all <- summary(model)$coefficients
-    if (!"effect" %in% rownames(all)) stop("the orders do not separate the effect from the periods")
-    one <- all["effect", ]
+    dropped <- setdiff(colnames(columns), names(fixef(model)))
+    if (length(dropped) > 0)
+      notes <- c(notes, paste("left out, since the orders do not separate it:", paste(dropped, collapse = ", ")))
+    one <- summary(model)$coefficients["effect", ]
     reach <- qt(0.975, one["df"]) * one["Std. Error"]
     spread <- as.data.frame(VarCorr(model))
     of <- function(group, name) spread$sdcor[spread$grp %in% group & spread$var1 %in% name]
@@ -172,8 +183,12 @@ fit <- function(rows, a, b, level, before, fixed) {
     result <- c(number(one["Estimate"]), number(one["Estimate"] - reach), number(one["Estimate"] + reach),
                 number(one["Pr(>|t|)"]), number(one["df"]), number(of(groups, "(Intercept)")),
                 number(of(groups, "effect")), number(of("Residual", NA)))
-    if (isSingular(model)) note <- "singular: a random effect has no variance"
-  }, error = function(e) note <<- gsub("[\t\r\n]+", " ", conditionMessage(e)))
+    if (isSingular(model)) notes <- c(notes, "singular: a random effect has no variance")
+  }, warning = function(w) {
+    notes <<- c(notes, conditionMessage(w))
+    invokeRestart("muffleWarning")
+  }), error = function(e) notes <<- c(notes, conditionMessage(e)))
+  note <- gsub("[\t\r\n]+", " ", paste(notes, collapse = "; "))
   cat(nrow(rows), result, formula, note, sep = "\t", file = "models.tsv", append = TRUE)
   cat("\n", file = "models.tsv", append = TRUE)
 }

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <utility>
 
 namespace tactus::analysis {
@@ -198,14 +199,20 @@ private:
     void note_settings() {
         std::vector<std::string> settings = choice_.settings;
         for (const std::string& asset : choice_.assets) settings.push_back("asset " + asset);
-        if (settings == entry_.settings) return;
-        if (!trials_.empty())
+        if (entry_.settings && by_key(settings) == by_key(*entry_.settings)) return;
+        if (!trials_.empty() && entry_.settings)
             throw Error(
                 fmt::format("{}: the trials of {} were run with {}, and now with {}; resume the session with the same "
                             "--set and --asset, or withdraw the subject and begin anew",
-                            choice_.out.string(), entry_.pseudonym, listed(entry_.settings), listed(settings)));
+                            choice_.out.string(), entry_.pseudonym, listed(*entry_.settings), listed(settings)));
         entry_.settings = std::move(settings);
         folder_.update(entry_);
+    }
+
+    /// Those of one key stay in their order: the last one counts.
+    static std::vector<std::string> by_key(std::vector<std::string> settings) {
+        std::ranges::stable_sort(settings, {}, [](const std::string& one) { return one.substr(0, one.find('=')); });
+        return settings;
     }
 
     static std::string listed(const std::vector<std::string>& settings) {
@@ -230,7 +237,10 @@ private:
                 choice_.registration ? fmt::format("{:.3g} mm", 1e3 * *choice_.registration) : "not measured";
             folder_.update(entry_);
         }
-        if (is_rehearsal())
+        bool has_rehearsal = false;
+        for (std::size_t task = 0; task < std::max<std::size_t>(protocol_.tasks.size(), 1); ++task)
+            has_rehearsal = has_rehearsal || is_rehearsal(task);
+        if (has_rehearsal)
             hooks_.say(
                 "This is a rehearsal: no haptic device is chosen, or the registration is not given. The analysis "
                 "tests neither mode nor display from it.\n");
@@ -238,10 +248,10 @@ private:
     }
 
     /// A mouse or the patch's own simulated hand is no haptic device.
-    bool is_rehearsal() {
+    bool is_rehearsal(std::size_t task) {
         if (simulated_) return false;
         if (protocol_.registration && !choice_.registration) return true;
-        if (!has_hand()) return false;  // a sound card is the device
+        if (!has_hand(task)) return false;  // a sound card is the device
         for (const std::string& setting : choice_.settings) {
             const std::size_t at = setting.find(".device=");
             if (at == std::string::npos) continue;
@@ -255,14 +265,17 @@ private:
         return true;
     }
 
-    bool has_hand() {
-        if (!has_hand_) {
-            const compile::Schedule plan = run::load_plan(trial_choice(protocol_, TrialSpec{}), assets_);
-            has_hand_ = std::ranges::any_of(plan.nodes, [](const compile::ScheduleNode& node) {
+    bool has_hand(std::size_t task) {
+        const auto [found, is_new] = has_hand_.try_emplace(task);
+        if (is_new) {
+            TrialSpec spec;
+            spec.task = task;
+            const compile::Schedule plan = run::load_plan(trial_choice(protocol_, spec), assets_);
+            found->second = std::ranges::any_of(plan.nodes, [](const compile::ScheduleNode& node) {
                 return node.type->role == NodeRole::hand_source || node.type->role == NodeRole::motor_sink;
             });
         }
-        return *has_hand_;
+        return found->second;
     }
 
     bool pause_before(const TrialSpec& spec, const SubjectSession& session) {
@@ -290,7 +303,7 @@ private:
         record.interval = spec.interval;
         record.folder = fmt::format("trial-{:04}", spec.number);
         record.is_simulated = simulated_.has_value();
-        record.is_rehearsal = is_rehearsal();
+        record.is_rehearsal = is_rehearsal(spec.task);
         const fs::path at = home_ / record.folder;
         // What a trial left that was cut off.
         std::error_code failure;
@@ -437,7 +450,7 @@ private:
     fs::path home_;
     std::vector<TrialRecord> trials_;
     std::optional<SimulatedSubject> simulated_;
-    std::optional<bool> has_hand_;  ///< of the patch
+    std::map<std::size_t, bool> has_hand_;  ///< the patch of each task
     compile::AssetCache assets_;
 };
 
@@ -480,16 +493,33 @@ std::vector<std::string> sound_settings(const Protocol& protocol, const compile:
                                     plan.patch.file.string(), cap.output, did_you_mean(cap.output, outputs)));
     for (const compile::ScheduleNode& node : plan.nodes) {
         if (node.type->name != sound_node) continue;
-        const Param* limit = node.params.at("limit");
+        const Param *limit = node.params.at("limit"), *full_scale = node.params.at("full_scale");
+        const auto refuse_stimulus = [&](const char* param, const char* what) {
+            if (protocol.stimulus &&
+                std::ranges::find(protocol.stimulus->parameters, fmt::format("{}.{}", node.name, param)) !=
+                    protocol.stimulus->parameters.end())
+                throw Error(
+                    fmt::format("{}: [stimulus]: it changes the {} of '{}', which [limits] sound needs; "
+                                "change the level of a node before it",
+                                protocol.file.string(), what, node.name));
+        };
         for (const experiment::SoundCap& cap : protocol.limits.sound) {
             if (!cap.output.empty() && cap.output != node.name) continue;
-            for (const compile::ScheduleWire& wire : plan.wires)
+            refuse_stimulus("limit", "limit");
+            if (!cap.is_of_full_scale) refuse_stimulus("full_scale", "full scale");
+            for (const compile::ScheduleWire& wire : plan.wires) {
+                if (wire.param == full_scale && !cap.is_of_full_scale)
+                    throw Error(wire.where,
+                                fmt::format("this wire drives the full scale of '{}', so that a limit in the unit of "
+                                            "its signal is none; give the limit in dBFS",
+                                            node.name));
                 if (wire.param == limit)
                     throw Error(wire.where,
                                 fmt::format("this wire drives the limit of '{}', which the experiment sets; "
                                             "remove one of them",
                                             node.name));
-            const double level = cap.is_of_full_scale ? cap.level : cap.level / node.params.at("full_scale")->value;
+            }
+            const double level = cap.is_of_full_scale ? cap.level : cap.level / full_scale->value;
             settings.push_back(fmt::format("{}.limit={}", node.name, std::min(level, 1.0)));
         }
     }

@@ -68,7 +68,7 @@ struct ExperimentEnd {
 run::RunChoice trial_choice(const experiment::Protocol& protocol, const TrialSpec& spec);
 
 /// NODE.limit=VALUE for each audio output whose loudest sample the protocol limits. Throws Error for an output that the patch does
-/// not have, and for a limit that a wire drives.
+/// not have, for a limit that a wire or the stimulus drives, and for one in the unit of the signal where they drive the full scale.
 std::vector<std::string> sound_settings(const experiment::Protocol& protocol, const compile::Schedule& plan);
 
 /// Renders the least and the greatest level of each condition with the patch's simulated hand and measures them. Throws Error with

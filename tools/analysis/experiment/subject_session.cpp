@@ -56,8 +56,10 @@ SubjectSession::SubjectSession(const Protocol& protocol, std::size_t row, const 
     if (!blocks_.empty()) begin_block();
     for (const TrialRecord& trial : done) {
         const std::optional<TrialSpec> spec = next();
-        if (!spec || spec->phase != trial.phase || protocol.conditions[spec->condition].name != trial.condition ||
-            spec->interval != trial.interval || (protocol.is_psychophysics() && spec->level != trial.level))
+        const std::string task = !spec || protocol.is_psychophysics() ? std::string() : protocol.tasks[spec->task].name;
+        if (!spec || spec->phase != trial.phase || task != trial.task ||
+            protocol.conditions[spec->condition].name != trial.condition || spec->interval != trial.interval ||
+            (protocol.is_psychophysics() && spec->level != trial.level))
             throw Error(
                 fmt::format("trial {} is not the one that the protocol prescribes there: the data belong to "
                             "another protocol or version of the program",

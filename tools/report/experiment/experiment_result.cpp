@@ -249,6 +249,11 @@ struct Threshold {
     std::optional<double> shown(const std::optional<double>& level) const {
         return level ? std::optional(*level / factor) : std::nullopt;
     }
+    /// Of a match, on the axis of the stimulus: of logarithms it has no unit.
+    std::optional<double> deviation() const {
+        if (!of->adjusted) return std::nullopt;
+        return protocol->stimulus->is_log ? of->adjusted->deviation : of->adjusted->deviation / factor;
+    }
     /// Mean match of a direction, in the unit of levels.
     std::optional<double> match(double psychophysics::AdjustedLevel::* member) const {
         return of->adjusted ? shown(protocol->stimulus->level_at((*of->adjusted).*member)) : std::nullopt;
@@ -290,8 +295,7 @@ const Fields<Threshold>& threshold_fields() {
                     [](const T& t) { return t.match(&AdjustedLevel::below); })
             .number("from_above", "from above", significant(4),
                     [](const T& t) { return t.match(&AdjustedLevel::above); })
-            .number("match_deviation", "deviation", significant(3),
-                    [](const T& t) { return t.of->adjusted ? std::optional(t.of->adjusted->deviation) : std::nullopt; })
+            .number("match_deviation", "deviation", significant(3), [](const T& t) { return t.deviation(); })
             .number("max_level_error", "", significant(3), [](const T& t) { return t.of->max_level_error; });
     return all;
 }
@@ -304,6 +308,20 @@ struct Subject {
 Values marked_in(const Subject& s) {
     Values all;
     for (const auto& [condition, count] : s.of->marked_in) all.emplace_back(condition, count);
+    return all;
+}
+
+/// In the units of the protocol; logarithms have none.
+Values means_of(const Subject& s) {
+    Values all;
+    for (const experiment::Task& task : s.protocol->tasks)
+        for (const experiment::Measure& measure : task.measures)
+            for (const experiment::Condition& condition : s.protocol->conditions) {
+                const auto mean = analysis::value_of(*s.protocol, *s.of, task.name, measure.name, condition.name);
+                const double factor = measure.is_log ? 1.0 : parse_unit(measure.unit).factor;
+                if (mean)
+                    all.emplace_back(fmt::format("{} {} {}", task.name, measure.name, condition.name), *mean / factor);
+            }
     return all;
 }
 
@@ -322,11 +340,7 @@ const Fields<Subject>& subject_fields() {
                                                     : std::string();
                   })
             .text("excluded", "left out", [](const S& s) { return s.of->excluded; })
-            .numbers("means", [](const S& s) {
-                Values all_;
-                for (const auto& [name, value] : s.of->means) all_.emplace_back(name, value);
-                return all_;
-            });
+            .numbers("means", means_of);
     return all;
 }
 

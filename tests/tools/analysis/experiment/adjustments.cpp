@@ -216,6 +216,24 @@ TEST_CASE("a sound beyond the limit of an experiment is refused before the sessi
                       Catch::Matchers::ContainsSubstring("louder than its limit"));
     // A limit in the unit of the signal follows the full scale of the output.
     CHECK_NOTHROW(check_levels(with_limit("{speaker = 0.81}"), assets, {"speaker.full_scale=2"}, nullptr));
+    // Where the full scale is not one number, neither is such a limit.
+    const auto caps = [&](experiment::Protocol protocol, const std::string& stimulus, const std::string& wired) {
+        if (!stimulus.empty()) protocol.stimulus->parameters = {stimulus};
+        std::string patch = file::read_whole_file(protocol.patch);
+        if (!wired.empty()) patch.insert(patch.find("wires = [") + 9, "\n  \"second.out -> " + wired + "\",");
+        std::ofstream(scratch.path() / "patches/driven.toml") << patch;
+        run::RunChoice run;
+        run.patch = (scratch.path() / "patches/driven.toml").string();
+        return sound_settings(protocol, run::load_plan(run, assets));
+    };
+    CHECK(caps(with_limit("{speaker = 0.81}"), "", "").size() == 1);
+    CHECK(caps(with_limit("\"-6 dBFS\""), "speaker.full_scale", "").size() == 1);
+    CHECK_THROWS_WITH(caps(with_limit("{speaker = 0.81}"), "speaker.full_scale", ""),
+                      Catch::Matchers::ContainsSubstring("changes the full scale of 'speaker'"));
+    CHECK_THROWS_WITH(caps(with_limit("{speaker = 0.81}"), "", "speaker.full_scale"),
+                      Catch::Matchers::ContainsSubstring("drives the full scale of 'speaker'"));
+    CHECK_THROWS_WITH(caps(with_limit("\"-6 dBFS\""), "speaker.limit", ""),
+                      Catch::Matchers::ContainsSubstring("changes the limit of 'speaker'"));
     // In a session: half of the amplitude at which the subject's matches are.
     const std::atomic<bool> never{false};
     ExperimentChoice choice = adjusting_subject(with_limit("{speaker = 0.05}"), scratch.path() / "data");

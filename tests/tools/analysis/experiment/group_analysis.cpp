@@ -45,6 +45,7 @@ struct StudyModel {
     double time = 1.25;  ///< factor of the offset mode on the labyrinth
     double left_behind = 1.0;  ///< factor of the offset mode on the labyrinth of the next period
     std::function<void(TrialRecord&, std::size_t subject)> change{};
+    bool has_one_order = false;  ///< all subjects have that of the first
 };
 
 /// A study of the protocol's orders. Distances do not depend on the mode.
@@ -54,6 +55,7 @@ void write_study(const fs::path& out, std::size_t subjects, const StudyModel& mo
     for (std::size_t s = 0; s < subjects; ++s) {
         experiment::SubjectEntry entry = folder.enrol(fmt::format("S{:02}", s + 1), true);
         entry.is_complete = true;
+        if (model.has_one_order) entry.row = 0;
         folder.update(entry);
         const Random person{mix(seed) ^ mix(s + 1)};
         std::vector<TrialRecord> trials;
@@ -188,11 +190,25 @@ TEST_CASE("results of an experiment follow their schema, with all parts and with
             found.mixed->problem = "no R";
         }
         const report::Result result = report::experiment_fields().of(found);
-        CHECK(test::broken_rule(nlohmann::json::parse(schema.dump()),
-                                nlohmann::json::parse(report::output_json(result).dump()), "results") == "");
+        nlohmann::json results = nlohmann::json::parse(report::output_json(result).dump());
+        const nlohmann::json rules = nlohmann::json::parse(schema.dump());
+        CHECK(test::broken_rule(rules, results, "results") == "");
+        REQUIRE(results["comparisons"].size() == analysis.comparisons.size());
+        for (std::size_t i = 0; i < analysis.comparisons.size(); ++i)
+            CHECK(results["comparisons"][i]["verdict"].get<std::string>() ==
+                  verdict_of(analysis.comparisons[i], analysis.protocol.alpha));
+        // The schema describes each part: it refuses one without a number, and one with a number more.
+        for (const char* part : {"comparisons", "groups", "subjects"}) {
+            nlohmann::json without = results, more = results;
+            without[part][0].erase(part == std::string("subjects") ? "trials" : "subjects");
+            more[part][0]["surplus"] = 1;
+            CHECK(test::broken_rule(rules, without, "results") != "");
+            CHECK(test::broken_rule(rules, more, "results") != "");
+        }
         const std::string text = report::text_of(result);
         CHECK(text.find("simulated data") != std::string::npos);
-        CHECK(text.find("inconclusive") + text.find("effect") != 2 * std::string::npos);
+        for (const AnalysedComparison& one : analysis.comparisons)
+            CHECK(text.find(verdict_of(one, analysis.protocol.alpha)) != std::string::npos);
         CHECK((text.find("widens the variance by 57 %") != std::string::npos) == has_all);
         CHECK((text.find("no R") != std::string::npos) == has_all);
         CHECK(report::html_of(result).find("<svg") != std::string::npos);
@@ -256,6 +272,84 @@ TEST_CASE("mixed models of R give the paired difference of a balanced study, and
     }
 }
 
+TEST_CASE("mixed models take levels as text, and note what lme4 warns of and what the orders do not separate",
+          "[long]") {
+    if (!has_lmer_test()) return test::skip("no R with lmerTest here");
+    const run::ScratchFolder scratch;
+    const std::atomic<bool> never{false};
+    StudyModel model;
+    // Subjects that differ by metres, measured to the micrometre.
+    model.change = [](TrialRecord& trial, std::size_t subject) {
+        if (trial.task == "cube")
+            trial.measures["distance"] = 1e3 * static_cast<double>(subject) + 1e-4 * trial.measures["distance"];
+    };
+    write_study(scratch.path() / "data", 8, model);
+    ExperimentAnalysis analysis = analyse_experiment(scratch.path() / "data", {.bootstrap = 0});
+    const auto rename = [&](std::string& level) {
+        if (level == "offset") level = "080";
+        if (level == "co-located") level = "T";
+        if (level == "mirror") level = "1e2";
+        if (level == "HOE") level = "1e3";
+    };
+    for (experiment::Condition& condition : analysis.protocol.conditions)
+        for (auto& [factor, level] : condition.factors) rename(level);
+    for (AnalysedComparison& one : analysis.comparisons)
+        for (std::string* level : {&one.of.a, &one.of.b, &one.of.within}) rename(*level);
+    const MixedModels named = fit_mixed_models(analysis, scratch.path() / "data", false, never);
+    REQUIRE(named.models.size() == analysis.comparisons.size());
+    for (std::size_t i = 0; i < named.models.size(); ++i) {
+        const MixedModel& one = named.models[i];
+        CAPTURE(one.label, one.formula, one.note);
+        REQUIRE(one.effect);
+        if (one.label.find("cube distance") == 0) CHECK(one.note.find("converge") != std::string::npos);
+        else CHECK(*one.effect == Approx(analysis.comparisons[i].test->of.mean).epsilon(0.05).margin(0.05));
+    }
+    // Each period is one condition: nothing tells them apart.
+    write_study(scratch.path() / "one", 8, {.has_one_order = true});
+    const MixedModels alike = fit_mixed_models(analyse_experiment(scratch.path() / "one", {.bootstrap = 0}),
+                                               scratch.path() / "one", false, never);
+    REQUIRE_FALSE(alike.models.empty());
+    for (const MixedModel& one : alike.models) {
+        CAPTURE(one.label, one.formula, one.note);
+        CHECK_FALSE(one.effect);
+        CHECK(one.note.find("the orders do not separate the effect from ") == 0);
+        CHECK(one.note.find("period") != std::string::npos);
+    }
+}
+
+TEST_CASE("results show each number in the unit that they state") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    write_study(data, 4, {});
+    ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0});
+    const auto results_of = [&] {
+        return report::output_json(report::experiment_fields().of(report::FoundExperiment{&analysis, {}}));
+    };
+    const file::Json means = results_of()["subjects"][0]["means"];
+    const auto& own = analysis.subjects.front().means;
+    CHECK(means["cube distance mirrorHere"].get<double>() == Approx(own.at("cube distance mirrorHere") / mm));
+    // The mean of logarithms has no unit.
+    CHECK(means["labyrinth time hoeHere"].get<double>() == Approx(own.at("labyrinth time hoeHere")));
+    // Matches of an adjustment on a linear scale, and on one of logarithms.
+    analysis = {};
+    analysis.protocol = experiment::load_protocol(test::source_folder() / "assets/library/experiments/intensity.toml");
+    analysis.protocol.stimulus->unit = "mm";
+    analysis.subjects.emplace_back();
+    SubjectThreshold match;
+    match.condition = "f40";
+    match.adjusted.emplace();
+    match.adjusted->below = 4.0 * mm;
+    match.adjusted->above = 6.0 * mm;
+    match.adjusted->deviation = 0.25 * mm;
+    analysis.subjects.front().thresholds = {match};
+    for (const bool is_log : {false, true}) {
+        analysis.protocol.stimulus->is_log = is_log;
+        const file::Json shown = results_of()["thresholds"][0];
+        CHECK(shown["match_deviation"].get<double>() == Approx(is_log ? 0.25e-3 : 0.25));
+        if (!is_log) CHECK(shown["from_below"].get<double>() == Approx(4.0));
+    }
+}
+
 TEST_CASE("tables are as BIDS demands: a description of each column, n/a for what is missing, one task in each name") {
     const run::ScratchFolder scratch;
     const fs::path data = scratch.path() / "data";
@@ -272,6 +366,10 @@ TEST_CASE("tables are as BIDS demands: a description of each column, n/a for wha
     CHECK(description["BIDSVersion"].get<std::string>() == "1.9.0");
     CHECK_FALSE(description["Name"].get<std::string>().empty());
     CHECK(fs::file_size(data / "README") > 20);
+    // What a laboratory wrote into it stays.
+    file::write_whole_file(data / "README", "ours");
+    write_bids(analyse_experiment(data, {.bootstrap = 0}), data);
+    CHECK(file::read_whole_file(data / "README") == "ours");
     std::vector<fs::path> tables{data / "participants.tsv"};
     for (int s = 1; s <= 4; ++s)
         for (const char* task : {"cube", "spiral", "labyrinth"})

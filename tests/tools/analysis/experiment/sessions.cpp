@@ -10,6 +10,7 @@
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tools/run/rendered_run.hpp"
 #include "tools/run/scratch_folder.hpp"
 
 #include <algorithm>
@@ -159,6 +160,22 @@ TEST_CASE("a session that is resumed after any trial goes on as if it had not be
     std::vector<TrialRecord> foreign = all;
     foreign[2].level *= 1.5;
     CHECK_THROWS_AS(SubjectSession(protocol, 1, foreign), Error);
+}
+
+TEST_CASE("trials of another order of tasks are not those of a session") {
+    const experiment::Protocol protocol = experiment::load_protocol(bundled / "co-location.toml");
+    SubjectSession session(protocol, 0, {});
+    std::vector<TrialRecord> all;
+    while (const auto spec = session.next()) {
+        all.push_back(record_of(protocol, *spec, true));
+        all.back().task = protocol.tasks[spec->task].name;
+        session.add(all.back());
+    }
+    CHECK_FALSE(SubjectSession(protocol, 0, all).next());
+    all.front().task = all.back().task;
+    CHECK(protocol.tasks[SubjectSession(protocol, 0, {}).next()->task].name != all.front().task);
+    CHECK_THROWS_WITH(SubjectSession(protocol, 0, all),
+                      Catch::Matchers::ContainsSubstring("trial 1 is not the one that the protocol prescribes"));
 }
 
 TEST_CASE("measures of a series have their closed forms") {
@@ -346,7 +363,7 @@ TEST_CASE("a protocol may name files above its own folder, and its data can be a
 TEST_CASE("a session is resumed with the settings with which it began", "[slow]") {
     const run::ScratchFolder scratch;
     ExperimentChoice choice = simulated_choice(scratch.path(), "P01");
-    choice.settings = {"first.max_force=9 N"};
+    choice.settings = {"first.max_force=9 N", "hand_out.max_force=30 N"};
     // Ended after three trials.
     std::atomic<bool> stop{false};
     ExperimentHooks hooks = silent();
@@ -356,16 +373,60 @@ TEST_CASE("a session is resumed with the settings with which it began", "[slow]"
     const std::string before = trials_of(scratch.path(), "P01");
     choice.settings = {"first.max_force=8 N"};
     const std::atomic<bool> never{false};
-    CHECK_THROWS_WITH(
-        run_experiment(choice, silent(), never),
-        Catch::Matchers::ContainsSubstring("were run with 'first.max_force=9 N', and now with 'first.max_force=8 N'"));
+    CHECK_THROWS_WITH(run_experiment(choice, silent(), never),
+                      Catch::Matchers::ContainsSubstring(
+                          "were run with 'first.max_force=9 N', 'hand_out.max_force=30 N', and now with "
+                          "'first.max_force=8 N'"));
     CHECK(trials_of(scratch.path(), "P01") == before);
-    choice.settings = {"first.max_force=9 N"};
+    // In another order they are the same.
+    choice.settings = {"hand_out.max_force=30 N", "first.max_force=9 N"};
+    stop = false;
+    hooks.progress = [&](const TrialSpec&, int, int) { stop = true; };
+    CHECK_FALSE(run_experiment(choice, hooks, stop).is_complete);
+    // An experiment of before settings were stored: what they were is not known, and those of now are noted.
+    const fs::path noted = choice.out / "experiment.json";
+    const std::string text = file::read_whole_file(noted);
+    const std::size_t at = text.rfind(',', text.find("\"settings\"")), end = text.find(']', at);
+    std::ofstream(noted) << text.substr(0, at) + text.substr(end + 1);
+    write_bids(analyse_experiment(choice.out, {0}), choice.out);
+    CHECK(file::read_whole_file(choice.out / "participants.tsv").ends_with("\tunknown\n"));
     CHECK(run_experiment(choice, silent(), never).is_complete);
+    CHECK(file::read_whole_file(noted).find("hand_out.max_force=30 N") != std::string::npos);
     // Another subject may have others; the analysis reports it.
     choice.subject = "P02";
     choice.settings.clear();
     CHECK(run_experiment(choice, silent(), never).is_complete);
+}
+
+TEST_CASE("a task with a hand is a rehearsal without a haptic device, whatever the first task has", "[slow]") {
+    const run::ScratchFolder scratch;
+    for (const char* name : {"vibration-match", "stiffness-pair"})
+        fs::copy_file(bundled / "patches" / (std::string(name) + ".toml"),
+                      scratch.path() / (std::string(name) + ".toml"));
+    std::ofstream(scratch.path() / "two.toml")
+        << "format = 1\ntitle = \"Two\"\nname = \"two\"\nconsent = false\n"
+           "[[task]]\nname = \"hear\"\npatch = \"vibration-match.toml\"\nlength = \"0.1 s\"\n"
+           "[[task.measure]]\nname = \"loud\"\nkind = \"rms\"\nport = \"both.out\"\n"
+           "[[task]]\nname = \"touch\"\npatch = \"stiffness-pair.toml\"\nlength = \"0.1 s\"\n"
+           "[[task.measure]]\nname = \"pushed\"\nkind = \"rms\"\nport = \"hand_out.applied.fz\"\n";
+    ExperimentChoice choice;
+    choice.protocol = experiment::load_protocol(scratch.path() / "two.toml");
+    choice.out = scratch.path() / "data";
+    choice.subject = "P01";
+    const std::atomic<bool> never{false};
+    compile::AssetCache assets;
+    std::string said;
+    ExperimentHooks hooks;
+    hooks.say = [&](const std::string& line) { said += line; };
+    hooks.confirm = [](const std::string&, char) { return true; };
+    hooks.perform = [&](const run::RunChoice& run, const experiment::Condition&, std::atomic<bool>&, TurnedLevel*) {
+        return LiveEnd{run::render_run(run, assets, never, [](double) {}).summary, {}, false};
+    };
+    CHECK(run_experiment(choice, hooks, never).is_complete);
+    CHECK(said.find("This is a rehearsal") != std::string::npos);
+    const auto trials = experiment::load_trials(choice.out / "sub-P01/trials.jsonl");
+    REQUIRE(trials.size() == 2);
+    for (const TrialRecord& trial : trials) CHECK(trial.is_rehearsal == (trial.task == "touch"));
 }
 
 TEST_CASE("a subject who withdraws leaves nothing, and the next one inherits the row") {
