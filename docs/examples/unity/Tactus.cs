@@ -50,7 +50,7 @@ namespace Tactus
 
     internal static class Native
     {
-        private const string Library = "libtactus.so.0.1";
+        private const string Library = "tactus";
 
         [StructLayout(LayoutKind.Sequential)]
         internal sealed class Error

@@ -29,9 +29,12 @@ namespace Tactus
 
         private void OnDisable()
         {
-            run.Finish();
-            run.Dispose();
-            patch.Dispose();
+            // OnEnable may have failed.
+            run?.Finish();
+            run?.Dispose();
+            patch?.Dispose();
+            run = null;
+            patch = null;
         }
     }
 }
