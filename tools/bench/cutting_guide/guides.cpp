@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include <sys/wait.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -58,7 +60,10 @@ double number_after(const std::string& text, const std::string& what) {
 /// What admesh finds wrong with an STL file; none: it is not installed.
 std::optional<std::string> flaws_by_admesh(const std::filesystem::path& stl) {
     const std::filesystem::path out = stl.parent_path() / "admesh.txt";
-    if (std::system(fmt::format("admesh '{}' >'{}' 2>/dev/null", stl.string(), out.string()).c_str()) != 0) return {};
+    const int status = std::system(fmt::format("admesh '{}' >'{}' 2>/dev/null", stl.string(), out.string()).c_str());
+    // A shell's code for a program that it does not find.
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) return {};
+    if (status != 0) return "admesh: did not end well; ";
     std::ifstream stream(out);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     std::string flaws;
