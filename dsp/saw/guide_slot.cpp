@@ -18,8 +18,7 @@ constexpr double entry = 0.3e-3;  // m by which a blade may miss the slot that i
 constexpr double ledge_reach = 3e-3;  // m from a ledge within which it holds a blade
 constexpr double max_gap = 5e-3;  // m from its slot at which a blade is released
 constexpr double rounding = 1e-11;  // m
-constexpr double same_touch = 5e-6;  // m between two solutions of one touch
-constexpr double taken_over = 0.1e-3;  // m of the hand's spring over which a wall takes over the force on the blade
+constexpr double taken_over = 0.1e-3;  // m of the hand over which a wall takes over the force on the blade
 constexpr double min_upright = 0.5;  // cosine of the angle beyond which a blade is in no slot
 
 /// Solves the symmetric system of `n` ≤ 3 rows; false if it is singular.
@@ -78,22 +77,27 @@ SlotHold::Placement SlotHold::placed(const Pose& frame, const Pose& hand) const 
 }
 
 /// The point of the blade that is farthest beyond a wall: the greatest value of a concave function over a convex outline.
-SlotHold::Touch SlotHold::deepest(const GuideSlot& slot, const Placement& at, double sign,
-                                  const Vec3& plane) const noexcept {
+SlotHold::Touch SlotHold::deepest(const GuideSlot& slot, const Placement& at, double sign, const Vec3& plane,
+                                  double crown) const noexcept {
     const double gx = sign * plane[1], gy = sign * plane[2];
+    const double middle_x = 0.5 * (slot.low + slot.high), middle_y = 0.5 * (slot.top + slot.bottom);
     Touch best;
     double most = -std::numeric_limits<double>::infinity();
     const auto consider = [&](double x, double y) noexcept {
         const double ex = beyond_ends(x, slot.low, slot.high), ey = beyond_ends(y, slot.top, slot.bottom);
-        const double recess = (ex * ex + ey * ey) / (2.0 * end_radius), value = gx * x + gy * y - recess;
+        const double mx = x - middle_x, my = y - middle_y;
+        const double recess = (ex * ex + ey * ey) / (2.0 * end_radius) + 0.5 * crown * (mx * mx + my * my);
+        const double value = gx * x + gy * y - recess;
         if (!(value > most)) return;
         most = value;
         best.x = x, best.y = y, best.recess = recess;
-        best.slope_x = ex / end_radius, best.slope_y = ey / end_radius;
+        best.slope_x = ex / end_radius + mx * crown, best.slope_y = ey / end_radius + my * crown;
     };
     // Where the wall has the slope of the blade, if the blade reaches that far.
     const auto inner = [&](double g, double low, double high) {
-        return g * end_radius + (g > 0.0 ? high : g < 0.0 ? low : 0.5 * (low + high));
+        const double middle = 0.5 * (low + high), half = 0.5 * (high - low), flat = half * crown;
+        if (std::abs(g) < flat) return middle + g / crown;
+        return middle + std::copysign(half, g) + (g - std::copysign(flat, g)) / (1.0 / end_radius + crown);
     };
     const double x = inner(gx, slot.low, slot.high), y = inner(gy, slot.top, slot.bottom);
     int left = 0, right = 0;
@@ -110,10 +114,12 @@ SlotHold::Touch SlotHold::deepest(const GuideSlot& slot, const Placement& at, do
             const Vec3 way = at.outline[(n + 1) % 4] - a;
             // The slope along the edge falls; it is linear between the ends of the slot.
             const auto slope = [&](double t) {
+                const double at_x = a.x + t * way.x, at_y = a.y + t * way.y;
                 return gx * way.x + gy * way.y -
-                       (beyond_ends(a.x + t * way.x, slot.low, slot.high) * way.x +
-                        beyond_ends(a.y + t * way.y, slot.top, slot.bottom) * way.y) /
-                           end_radius;
+                       (beyond_ends(at_x, slot.low, slot.high) * way.x +
+                        beyond_ends(at_y, slot.top, slot.bottom) * way.y) /
+                           end_radius -
+                       ((at_x - middle_x) * way.x + (at_y - middle_y) * way.y) * crown;
             };
             std::array<double, 5> ends{1.0, 1.0, 1.0, 1.0, 1.0};
             if (way.x != 0.0) ends[0] = (slot.low - a.x) / way.x, ends[1] = (slot.high - a.x) / way.x;
@@ -144,7 +150,7 @@ double SlotHold::beyond(const GuideSlot& slot, const Placement& at, const Touch&
 
 /// m between a slot and a blade beside it; 0: a part of the blade is in it.
 double SlotHold::gap(const GuideSlot& slot, const Placement& at) const noexcept {
-    return std::sqrt(2.0 * end_radius * deepest(slot, at, 1.0, Vec3(0.0)).recess);
+    return std::sqrt(2.0 * end_radius * deepest(slot, at, 1.0, Vec3(0.0), 0.0).recess);
 }
 
 bool SlotHold::stays_in(const GuideSlot& slot, const Placement& at) const noexcept {
@@ -156,7 +162,7 @@ const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand,
     if (slot_ >= 0) {
         const auto n = static_cast<std::size_t>(slot_);
         const bool is_given = n < slots.size();
-        const Placement at = placed(is_given ? slots[n].frame : frame_, hand);
+        const Placement at = placed(is_given ? slots[n].frame : walls_.frame, hand);
         if (is_given && is_upright(at.pose) && stays_in(slots[n], at)) {
             hand_ = at;
         } else {
@@ -179,7 +185,7 @@ const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand,
         if (slot_ < 0) return guided_;
     }
     const GuideSlot& slot = slots[static_cast<std::size_t>(slot_)];
-    frame_ = slot.frame;
+    walls_ = slot;
     // Room that the blade had when it entered closes only as the hand itself gives it up: no energy comes of it.
     room_ = std::min(room_, std::max(0.0, miss(slot, hand_)));
     solve(slot);
@@ -226,28 +232,27 @@ double SlotHold::apart(const GuideSlot& slot, const Placement& at) const noexcep
     return std::max(0.0, -beyond(slot, at, deepest(slot, at, -1.0, at.plane), at.plane));
 }
 
-/// Projection of the plane of the hand onto the convex set that the walls permit. Of all points of the blade at most three
+/// Projection of a plane of the hand onto the convex set that the walls permit. Of all points of the blade at most three
 /// touch a wall. In each round the point that is farthest beyond a wall joins them, and the exact solution of those few
 /// constraints decides which of them stay (a dual active set, as Goldfarb and Idnani 1983). The distance grows with each round.
-void SlotHold::solve(const GuideSlot& slot) noexcept {
+SlotHold::Solution SlotHold::project(const GuideSlot& slot, const Vec3& hand, Solution found) const noexcept {
     constexpr int max_rounds = 60;
-    offset_ = Vec3(0.0);
-    touch_count_ = 0;
+    found.offset = Vec3(0.0);
     std::array<Touch, max_touches + 2> rows;
     std::array<double, max_touches + 2> wanted;  // n·y ≤ −wanted, with y = (c, a · lever, b · lever) of the offset
-    Vec3 y(0.0);
+    Vec3& y = found.offset;
     const double lever = settings_.lever;
     for (int round = 0; round < max_rounds; ++round) {
-        const Vec3 plane = hand_.plane + Vec3(y.x, y.y / lever, y.z / lever);
-        std::size_t count = touch_count_;
-        for (std::size_t n = 0; n < count; ++n) rows[n] = touches_[n];
+        const Vec3 plane = hand + Vec3(y.x, y.y / lever, y.z / lever);
+        std::size_t count = found.count;
+        for (std::size_t n = 0; n < count; ++n) rows[n] = found.touches[n];
         for (const double sign : {-1.0, 1.0}) {
             if (sign > 0.0 && !std::isfinite(slot.other_wall)) continue;
             const Touch touch = deepest(slot, hand_, sign, plane);
             if (beyond(slot, hand_, touch, plane) - room_ > rounding) rows[count++] = touch;
         }
-        if (count == touch_count_) break;
-        for (std::size_t n = 0; n < count; ++n) wanted[n] = beyond(slot, hand_, rows[n], hand_.plane) - room_;
+        if (count == found.count) break;
+        for (std::size_t n = 0; n < count; ++n) wanted[n] = beyond(slot, hand_, rows[n], hand) - room_;
 
         std::array<std::size_t, 3> best{};
         std::array<double, 3> best_force{};
@@ -288,34 +293,30 @@ void SlotHold::solve(const GuideSlot& slot) noexcept {
         if (best_size == 0) break;
         const std::array<Touch, max_touches + 2> all = rows;
         for (std::size_t r = 0; r < best_size; ++r) {
-            touches_[r] = all[best[r]];
-            touches_[r].force = best_force[r];
+            found.touches[r] = all[best[r]];
+            found.touches[r].force = best_force[r];
         }
-        touch_count_ = best_size;
+        found.count = best_size;
         y = best_y;
     }
-    offset_ = {y.x, y.y / lever, y.z / lever};
+    return found;
+}
+
+void SlotHold::solve(const GuideSlot& slot) noexcept {
+    const Solution found = project(slot, hand_.plane, {});
+    touches_ = found.touches;
+    touch_count_ = found.count;
+    const Vec3& y = found.offset;
+    offset_ = {y.x, y.y / settings_.lever, y.z / settings_.lever};
     const double length = stretch();
     stiffness_ = settings_.stiffness * (length > max_lag ? max_lag / length : 1.0);
     for (std::size_t r = 0; r < touch_count_; ++r) touches_[r].force *= stiffness_;
-    // Two rounds may have found one touch twice.
-    for (std::size_t r = 0; r < touch_count_; ++r)
-        for (std::size_t c = touch_count_; c-- > r + 1;) {
-            Touch &a = touches_[r], b = touches_[c];
-            if (a.sign != b.sign || std::hypot(a.x - b.x, a.y - b.y) > same_touch) continue;
-            const double share = b.force / (a.force + b.force);
-            a.x += share * (b.x - a.x), a.y += share * (b.y - a.y);
-            a.slope_x += share * (b.slope_x - a.slope_x), a.slope_y += share * (b.slope_y - a.slope_y);
-            a.normal += share * (b.normal - a.normal);
-            a.force += b.force;
-            touches_[c] = touches_[--touch_count_];
-        }
 }
 
 /// The guided pose from the plane of the hand and its offset.
 void SlotHold::put() noexcept {
     if (offset_ == Vec3(0.0)) {
-        guided_ = frame_ * hand_.pose;
+        guided_ = walls_.frame * hand_.pose;
         return;
     }
     const Vec3 plane = hand_.plane + offset_;
@@ -323,7 +324,7 @@ void SlotHold::put() noexcept {
     const Vec3 wanted = glm::normalize(Vec3(-plane[1], -plane[2], 1.0)) * flat.z;
     Pose to{{}, glm::normalize(shortest_turn(flat, wanted) * hand_.upright)};
     to.position = Vec3(hand_.clamp.x, hand_.clamp.y, plane[0]) - to.rotate(clamp_local());
-    guided_ = frame_ * to;
+    guided_ = walls_.frame * to;
     guided_.orientation = glm::normalize(guided_.orientation);
 }
 
@@ -362,7 +363,7 @@ void SlotHold::let_go() noexcept {
 void SlotHold::release(const Pose& hand, double dt) noexcept {
     const Placement was = hand_;
     const double after = left_ - dt, kept = after > 1e-9 ? after / left_ : 0.0;
-    hand_ = placed(frame_, hand);
+    hand_ = placed(walls_.frame, hand);
     left_ = after;
     if (std::abs(hand_.pose.rotate(Vec3(0.0, 0.0, 1.0)).z) < 0.1 || kept == 0.0) {
         let_go();
@@ -392,31 +393,29 @@ double SlotHold::stretch() const noexcept {
 double SlotHold::force() const noexcept { return settings_.stiffness * std::min(stretch(), max_lag); }
 
 Wrench SlotHold::on_hand(const Wrench& on_blade) const noexcept {
-    if (touch_count_ == 0) return on_blade;
-    const Pose blade = frame_.inverse() * guided_;
-    const Quat back = glm::conjugate(frame_.orientation);
+    if (slot_ < 0 && !(left_ > 0.0)) return on_blade;
+    const Pose blade = walls_.frame.inverse() * guided_;
+    const Quat back = glm::conjugate(walls_.frame.orientation);
     Vec3 force = back * on_blade.force;
     Vec3 torque = back * on_blade.torque + glm::cross(blade.position - blade.apply(clamp_local()), force);
-    // What the walls carry of the force on the blade: nothing of it in the directions that they leave free. A wall that is just
-    // touched carries nothing yet, and takes over as the spring is stretched.
+    // What the walls carry of the force on the blade: as much of it as the guided pose does not follow a hand that goes to and
+    // fro along it. A constant force on the blade stays the gradient of an energy on the hand.
     Vec3 general(force.z, -torque.y / settings_.lever, torque.x / settings_.lever);
-    std::array<std::array<double, 3>, 3> gram{};
-    std::array<double, 3> right{}, carried{};
-    const double faded = slot_ >= 0 ? 1.0 : left_ / fade_time;
-    for (std::size_t r = 0; r < touch_count_; ++r) {
-        const Touch& touch = touches_[r];
-        right[r] = glm::dot(touch.normal, general);
-        for (std::size_t c = 0; c < touch_count_; ++c) gram[r][c] = glm::dot(touch.normal, touches_[c].normal);
-        const double share = std::clamp(touch.force / (stiffness_ * taken_over), 1e-9, 1.0) * faded;
-        gram[r][r] += gram[r][r] * (1.0 / share - 1.0);
+    if (const double size = glm::length(general); size > 0.0) {
+        const Vec3 along = general * (0.5 * taken_over / size);
+        const Vec3 step(along[0], along[1] / settings_.lever, along[2] / settings_.lever);
+        // In a release the touches are those of the last pose in the slot.
+        Solution near;
+        if (slot_ >= 0) near.touches = touches_, near.count = touch_count_;
+        const Vec3 held =
+            project(walls_, hand_.plane - step, near).offset - project(walls_, hand_.plane + step, near).offset;
+        general -= held * (size / taken_over * (slot_ >= 0 ? 1.0 : left_ / fade_time));
     }
-    if (solve_small(gram, right, touch_count_, carried))
-        for (std::size_t r = 0; r < touch_count_; ++r) general -= carried[r] * touches_[r].normal;
     force.z = general[0];
     force += spring_.force;
     torque = torque.z * heading_of(hand_.pose) + torque_of(general) + spring_.torque +
              glm::cross(hand_.clamp - hand_.pose.position, force);
-    return {frame_.orientation * force, frame_.orientation * torque};
+    return {walls_.frame.orientation * force, walls_.frame.orientation * torque};
 }
 
 }  // namespace tactus::saw

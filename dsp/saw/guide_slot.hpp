@@ -32,8 +32,10 @@ struct SlotSettings {
 
 /// The pose of the hand, moved no farther than the slot requires.
 ///
-/// In the frame of the slot a blade is a plane z = c + a·x + b·y. Two walls bound it wherever it is in the slot. Beyond the
-/// ends of the slot they recede as parabolas of `end_radius`, as far as the blade reaches. The poses that they permit are a
+/// In the frame of the slot a blade is a plane z = c + a·x + b·y. Two walls bound it wherever it is in the slot. They are
+/// crowned by `wall_crown`, 2.5 µm over 10 mm: the touch moves along an edge of the blade that lies on a wall, where it would
+/// jump from one end to the other, and the torque with it. Beyond the ends of the slot they recede as parabolas of
+/// `end_radius`, as far as the blade reaches. The poses that they permit are a
 /// convex set in (c, a, b). The guided pose is the nearest of them in the metric of the springs: the walls are rigid, however
 /// soft the springs, and the force is the gradient of an energy and therefore passive. Since the ends are round, a contact
 /// moves where a corner of the blade passes one of the slot, and the force turns with it; at sharp ends it would jump.
@@ -44,6 +46,7 @@ struct SlotSettings {
 class SlotHold {
 public:
     static constexpr double end_radius = 4e-3;  ///< m
+    static constexpr double wall_crown = 0.05;  ///< 1/m, curvature
     static constexpr double fade_time = 0.1;  ///< s
 
     SlotHold() = default;
@@ -77,6 +80,12 @@ private:
         double force = 0.0;  // N, its multiplier
     };
     static constexpr std::size_t max_touches = 3;
+    /// The way of a plane to the nearest one that the walls permit.
+    struct Solution {
+        Vec3 offset{0.0};  // m, in (c, a · lever, b · lever)
+        std::array<Touch, max_touches> touches{};  // forces in m; of one touch maybe two near each other
+        std::size_t count = 0;
+    };
     /// The blade of the hand in the frame of a slot.
     struct Placement {
         Pose pose;
@@ -87,11 +96,14 @@ private:
     };
 
     Placement placed(const Pose& frame, const Pose& hand) const noexcept;
-    Touch deepest(const GuideSlot& slot, const Placement& at, double sign, const Vec3& plane) const noexcept;
+    Touch deepest(const GuideSlot& slot, const Placement& at, double sign, const Vec3& plane,
+                  double crown = wall_crown) const noexcept;
     double beyond(const GuideSlot& slot, const Placement& at, const Touch& touch, const Vec3& plane) const noexcept;
     double gap(const GuideSlot& slot, const Placement& at) const noexcept;
     bool stays_in(const GuideSlot& slot, const Placement& at) const noexcept;
     void enter(std::span<const GuideSlot> slots, const Pose& hand) noexcept;
+    /// `found`: touches from which the search begins.
+    Solution project(const GuideSlot& slot, const Vec3& hand, Solution found) const noexcept;
     void solve(const GuideSlot& slot) noexcept;
     void pull() noexcept;
     void release(const Pose& hand, double dt) noexcept;
@@ -114,7 +126,8 @@ private:
     double room_ = 0.0;  // m beyond the walls
     double stiffness_ = 0.0;  // N/m: beyond `max_lag` less than that of the settings
     double fade_stiffness_ = 0.0;  // N/m, of the springs into which a release turns the force
-    Pose frame_, guided_;
+    GuideSlot walls_;  // of the last slot that held the blade
+    Pose guided_;
     Placement hand_;
     Vec3 offset_{0.0};  // of the guided plane from that of the hand
     Wrench spring_;  // on the hand about the clamp, frame of the slot

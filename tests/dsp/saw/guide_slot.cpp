@@ -12,6 +12,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -242,15 +243,17 @@ struct SlotPath {
     }
 };
 
-/// The largest change of the force between two of 256 steps of a tick that goes from `from` to `to`.
-double largest_step(saw::SlotHold hold, const std::vector<saw::GuideSlot>& slots, const SlotPath& path, double from,
-                    double to) {
-    double largest = 0.0;
-    Vec3 last = hold.on_hand({}).force;
+/// The largest changes of force and torque between two of 256 steps of a tick that goes from `from` to `to`.
+std::array<double, 2> largest_steps(saw::SlotHold hold, const Wrench& on_blade,
+                                    const std::vector<saw::GuideSlot>& slots, const SlotPath& path, double from,
+                                    double to) {
+    std::array<double, 2> largest{};
+    Wrench last = hold.on_hand(on_blade);
     for (int n = 1; n <= 256; ++n) {
         hold.follow(slots, path(from + (to - from) * n / 256.0), 1e-3);
-        const Vec3 now = hold.on_hand({}).force;
-        largest = std::max(largest, glm::length(now - last));
+        const Wrench now = hold.on_hand(on_blade);
+        largest[0] = std::max(largest[0], glm::length(now.force - last.force));
+        largest[1] = std::max(largest[1], glm::length(now.torque - last.torque));
         last = now;
     }
     return largest;
@@ -263,7 +266,7 @@ TEST_CASE("the force of a slot is passive and continuous, wherever a corner of a
     for (std::uint64_t run = 0; run < 30; ++run) {
         const SlotPath path{Random{11}, run};
         saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
-        double work = 0.0, bound = 0.0, most = 0.0, jump = 0.0;
+        double work = 0.0, bound = 0.0, most = 0.0, jump = 0.0, jump_of_torque = 0.0;
         Pose last;
         Wrench felt;
         constexpr int ticks = 4000;
@@ -279,9 +282,11 @@ TEST_CASE("the force of a slot is passive and continuous, wherever a corner of a
                 work += glm::dot(felt.force, way) + glm::dot(felt.torque, turn);
                 bound += 0.5 * (std::abs(glm::dot(now.force - felt.force, way)) +
                                 std::abs(glm::dot(now.torque - felt.torque, turn)));
-                if (glm::length(now.force - felt.force) > 0.5) {
+                if (glm::length(now.force - felt.force) > 0.5 || glm::length(now.torque - felt.torque) > 0.02) {
                     ++refined;
-                    jump = std::max(jump, largest_step(before, slots, path, s - 1.0 / ticks, s));
+                    const auto [of_force, of_torque] = largest_steps(before, {}, slots, path, s - 1.0 / ticks, s);
+                    jump = std::max(jump, of_force);
+                    jump_of_torque = std::max(jump_of_torque, of_torque);
                 }
             }
             most = std::max(most, glm::length(now.force));
@@ -293,8 +298,40 @@ TEST_CASE("the force of a slot is passive and continuous, wherever a corner of a
         CHECK(glm::length(felt.force) == 0.0);
         CHECK(most > 1.0);
         CHECK(jump < 0.1);
+        CHECK(jump_of_torque < 5e-3);  // an edge of the blade that came to lie along a wall gave 0.16 N·m
     }
     CHECK(refined > 50);
+}
+
+TEST_CASE("what the walls carry of a force on the blade changes without a step") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    const Wrench on_blade{{1.0, 2.0, 5.0}, {0.05, -0.04, 0.03}};
+    int refined = 0;
+    for (std::uint64_t run = 0; run < 8; ++run) {
+        const SlotPath path{Random{11}, run};
+        saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+        double jump = 0.0, jump_of_torque = 0.0;
+        Wrench felt;
+        constexpr int ticks = 1000;
+        for (int n = 0; n <= ticks; ++n) {
+            const double s = static_cast<double>(n) / ticks;
+            const saw::SlotHold before = hold;
+            hold.follow(slots, path(s), 1e-3);
+            const Wrench now = hold.on_hand(on_blade);
+            if (n > 0 && (glm::length(now.force - felt.force) > 1.0 || glm::length(now.torque - felt.torque) > 0.04)) {
+                ++refined;
+                const auto [of_force, of_torque] = largest_steps(before, on_blade, slots, path, s - 1.0 / ticks, s);
+                jump = std::max(jump, of_force);
+                jump_of_torque = std::max(jump_of_torque, of_torque);
+            }
+            felt = now;
+        }
+        CAPTURE(run);
+        CHECK(jump < 0.1);
+        CHECK(jump_of_torque < 5e-3);
+    }
+    CHECK(refined > 20);
 }
 
 TEST_CASE("what acts on the blade in the plane of its slot does the same work on a hand, however it is tilted") {
