@@ -62,7 +62,7 @@ private:
         for (;;) {
             pollfd all[3] = {{socket_descriptor, 0, 0}, {signals_, POLLIN, 0}, {engine_, POLLIN, 0}};
             ::poll(all, 3, look_every_ms);
-            if (all[1].revents != 0) return "the engine ended it";
+            if (all[1].revents != 0) return "it got a signal to end";
             if (all[0].revents != 0 || all[2].revents != 0) return "the engine has ended";
             if (block_.must_end.load(std::memory_order_acquire) != 0) return "the engine is done";
             if (is_engine_silent()) return "the engine was silent for a second";

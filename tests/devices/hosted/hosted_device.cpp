@@ -193,7 +193,7 @@ TEST_CASE("a driver that never returns makes samples invalid and is killed, not 
 
 TEST_CASE("a process of a device that is killed, ended or stopped is named", "[live]") {
     for (const auto& [signal, said] : {std::pair{SIGKILL, "its process was killed by signal 9"},
-                                       {SIGTERM, "its process ended: the engine ended it"},
+                                       {SIGTERM, "its process ended: it got a signal to end"},
                                        {SIGSTOP, "its driver did not return for 500 ms; its process was killed"}}) {
         CAPTURE(signal);
         const WatchedHost host;
