@@ -273,7 +273,9 @@ plan::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>&
             plan::add_step(plan, hide);
         }
         for (std::size_t n = first_segment; n < places.size(); ++n)
-            plan::change(plan, plan::PlaceFragment{static_cast<int>(n), places[n]}, {.by = "command"});
+            if (plan::change(plan, plan::PlaceFragment{static_cast<int>(n), places[n]}, {.by = "command"}) !=
+                plan::PlanHistory::Outcome::done)
+                throw Error(fmt::format("the plan of the flap: '{}' cannot be placed", pieces.bones[n].name));
     };
     arrange(pieces.planned, true);
     plan.alternatives.push_back({"table", {}});

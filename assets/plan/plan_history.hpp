@@ -100,6 +100,6 @@ private:
 };
 
 /// The same for one command.
-PlanHistory::Outcome change(CasePlan& plan, const PlanCommand& command, const StepWords& words);
+[[nodiscard]] PlanHistory::Outcome change(CasePlan& plan, const PlanCommand& command, const StepWords& words);
 
 }  // namespace tactus::plan

@@ -52,7 +52,7 @@ plan::PlanStep meaning(plan::StepKind kind, std::vector<int> fragments, std::str
 }
 
 void put(plan::CasePlan& plan, int fragment, const Pose& pose) {
-    plan::change(plan, plan::PlaceFragment{fragment, pose}, {});
+    REQUIRE(plan::change(plan, plan::PlaceFragment{fragment, pose}, {}) == plan::PlanHistory::Outcome::done);
 }
 
 /// Every kind of step, an undone branch and a second alternative.
@@ -65,7 +65,7 @@ plan::CasePlan eventful() {
     plan.steps.back().fit = plan::PlanFit{"a", "fit", 0.8, 0.3, 1e-4, -1e-5, 2e-4, 1.1e-4};
     plan.steps.back().run_second = 1.25;
     plan.steps.back().time = plan::time_of_day();
-    plan::change(plan, plan::UndoStep{}, {});
+    REQUIRE(plan::change(plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
     plan::add_step(plan, meaning(plan::StepKind::lock, {0, 1}));
     plan::add_step(plan, meaning(plan::StepKind::hide, {2}));
     plan.alternatives.push_back({"other", plan.place()});
@@ -73,7 +73,7 @@ plan::CasePlan eventful() {
     plan::PlanStep mirror = meaning(plan::StepKind::mirror, {});
     mirror.mirror = plan::MirrorTarget{"healthy.stl", 3, false, {0.0, 1.0, 0.0}, 0.1, any_pose(11), 1e-3};
     plan::add_step(plan, mirror);
-    plan::change(plan, plan::UndoStep{}, {});
+    REQUIRE(plan::change(plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
     return plan;
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("a plan that is read again has the same bits in every pose, and can be
     CHECK(plan::plan_text(again) == plan::plan_text(plan));
     CHECK(again.alternatives[1].place.tip == plan.alternatives[1].place.tip);
     plan::CasePlan redone = again;
-    plan::change(redone, plan::RedoStep{}, {});
+    REQUIRE(plan::change(redone, plan::RedoStep{}, {}) == plan::PlanHistory::Outcome::done);
     CHECK(redone.place().head == static_cast<int>(plan.steps.size()) - 1);
     const plan::PlanState before = plan::state_of(plan), after = plan::state_of(again);
     for (int n = 0; n < 4; ++n) CHECK(same_bits(before.arrangement.pose(n), after.arrangement.pose(n)));
@@ -122,9 +122,9 @@ TEST_CASE("a repainted fragment has its file from that step on, in the file of t
     const plan::CasePlan again = plan::read_plan_text(plan::plan_text(plan), "p");
     CHECK(file_of_b(again) == "b2.vdb");
     CHECK(plan::plan_text(again) == plan::plan_text(plan));
-    for (int n = 0; n < 2; ++n) plan::change(plan, plan::UndoStep{}, {});
+    for (int n = 0; n < 2; ++n) REQUIRE(plan::change(plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
     CHECK(file_of_b(plan) == "b");
-    plan::change(plan, plan::RedoStep{}, {});
+    REQUIRE(plan::change(plan, plan::RedoStep{}, {}) == plan::PlanHistory::Outcome::done);
     CHECK(file_of_b(plan) == "b2.vdb");
     // One fragment, and a file.
     CHECK_THROWS_WITH(plan::add_step(plan, painted({1, 2})), Catch::Matchers::ContainsSubstring("more than one"));
@@ -143,14 +143,14 @@ TEST_CASE("undoing takes poses back to the bit, and no step is ever lost") {
         way.push_back(plan::state_of(plan).arrangement.pose(2));
     }
     for (std::size_t n = way.size() - 1; n-- > 0;) {
-        plan::change(plan, plan::UndoStep{}, {});
+        REQUIRE(plan::change(plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
         CHECK(same_bits(plan::state_of(plan).arrangement.pose(2), way[n]));
     }
     for (std::size_t n = 1; n < way.size(); ++n) {
-        plan::change(plan, plan::RedoStep{}, {});
+        REQUIRE(plan::change(plan, plan::RedoStep{}, {}) == plan::PlanHistory::Outcome::done);
         CHECK(same_bits(plan::state_of(plan).arrangement.pose(2), way[n]));
     }
-    for (int n = 0; n < 20; ++n) plan::change(plan, plan::UndoStep{}, {});
+    for (int n = 0; n < 20; ++n) REQUIRE(plan::change(plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
     put(plan, 1, any_pose(99));
     CHECK(plan.steps.size() == 51);
     CHECK(same_bits(plan::state_of(plan).arrangement.pose(2), way[30]));
@@ -358,9 +358,9 @@ TEST_CASE("a plan carries a whole reconstruction, to the bit, and undo takes it 
     CHECK(found->flap.implants[0].head == meant.flap.implants[0].head);
     CHECK(found->flap.paddle->at == meant.flap.paddle->at);
     CHECK(found->flap.margin == meant.flap.margin);
-    plan::change(plan, plan::UndoStep{}, {});
+    REQUIRE(plan::change(plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
     CHECK(plan::state_of(plan).reconstruction->flap.margin == 0.1 / 3.0);
-    plan::change(plan, plan::UndoStep{}, {});
+    REQUIRE(plan::change(plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
     CHECK_FALSE(plan::state_of(plan).reconstruction);
 }
 

@@ -74,10 +74,12 @@ TEST_CASE("a matcher that has nothing to fit to says so, with what to do") {
 
 TEST_CASE("a fragment whose partner has moved away no longer stands") {
     const auto plan = broken_or_locked(false);
-    plan::change(plan->plan, plan::SettleFragment{1, 0, {}, {0.8, 0.5, 1e-4, 0.0, 0.0, 1e-4}}, {});
+    REQUIRE(plan::change(plan->plan, plan::SettleFragment{1, 0, {}, {0.8, 0.5, 1e-4, 0.0, 0.0, 1e-4}}, {}) ==
+            plan::PlanHistory::Outcome::done);
     CHECK(shown(plan).objects[1].stands);
-    plan::change(plan->plan, plan::PlaceFragment{0, {Vec3(0.0, 0.0, 1.0) * mm, {1.0, 0.0, 0.0, 0.0}}}, {});
+    REQUIRE(plan::change(plan->plan, plan::PlaceFragment{0, {Vec3(0.0, 0.0, 1.0) * mm, {1.0, 0.0, 0.0, 0.0}}}, {}) ==
+            plan::PlanHistory::Outcome::done);
     CHECK_FALSE(shown(plan).objects[1].stands);
-    plan::change(plan->plan, plan::UndoStep{}, {});
+    REQUIRE(plan::change(plan->plan, plan::UndoStep{}, {}) == plan::PlanHistory::Outcome::done);
     CHECK(shown(plan).objects[1].stands);
 }

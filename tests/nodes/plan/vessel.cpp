@@ -377,7 +377,7 @@ TEST_CASE("a piece near its planned place is pulled to it, with the piece that i
     lock.fragments = {1};
     plan::add_step(planned->plan, lock);
     const Pose goal{Vec3(0.0, 0.0, -3.0 * mm), rotation_by(Vec3(0.0, 0.0, 0.2))};
-    plan::change(planned->plan, plan::PlaceFragment{2, goal}, {});
+    REQUIRE(plan::change(planned->plan, plan::PlaceFragment{2, goal}, {}) == plan::PlanHistory::Outcome::done);
     planned->plan.place().head = 0;
     NodeHarness shown("case_scene", {.period = flicks_per_second / 1000});
     shown.asset("plan", planned).disconnect_optional();
