@@ -50,11 +50,6 @@ bool GenerationBuilder::is_unknown(const io::DeviceSlot& slot) {
     return !is_declared(slot) && haptic::is_real_driver(slot.name);
 }
 
-void GenerationBuilder::notify(const std::string& notice) {
-    std::vector<std::string>& notices = context_.host.notices;
-    if (std::ranges::find(notices, notice) == notices.end()) notices.push_back(notice);
-}
-
 void GenerationBuilder::fit_to_devices() {
     if (std::ranges::none_of(made_->nodes, [](const auto& node) { return softest_driven(*node) != nullptr; })) return;
     scale_forces();
@@ -80,7 +75,7 @@ void GenerationBuilder::scale_forces() {
         if (!(stated > 0.0 && stated < wanted)) continue;
         Param& param = *scale->second;
         param.value = std::max(param.min, stated / wanted);
-        notify(
+        context_.host.notify(
             fmt::format("{}.device_scale = {:.3g}: device '{}' gives at most {:.3g} N, the patch up to {:.3g} N; the "
                         "tool cuts as with all of its force (--device-scale chooses another scale)",
                         tool.name, param.value, slot->port.info.name, stated, wanted));
@@ -122,7 +117,7 @@ void GenerationBuilder::limit_stiffness() {
                             felt < stated ? "" : " stiff");
             if (is_declared(*slot))
                 throw Error(spring.where, told + fmt::format("lower it to {:.4g} N/mm", most * 1e-3));
-            notify(told + fmt::format("it is lowered to {:.4g} N/mm", most * 1e-3));
+            context_.host.notify(told + fmt::format("it is lowered to {:.4g} N/mm", most * 1e-3));
         }
         param.max = std::max(param.min, std::min(param.max, most));
         param.value = std::min(param.value, param.max);

@@ -48,7 +48,6 @@ private:
     // fit_to_devices.cpp
     bool is_declared(const io::DeviceSlot& slot);
     bool is_unknown(const io::DeviceSlot& slot);
-    void notify(const std::string& notice);
     void fit_to_devices();
     void scale_forces();
     void limit_stiffness();

@@ -79,6 +79,11 @@ void EngineHost::keep() {
 
 void EngineHost::discard() { opened_ = {}; }
 
+void EngineHost::notify(std::string notice) {
+    if (std::ranges::find(opened_.notices, notice) == opened_.notices.end())
+        opened_.notices.push_back(std::move(notice));
+}
+
 std::string EngineHost::device_name(const std::string& wanted, const SourceLocation& where) const {
     if (!wanted.empty()) return wanted;
     // What another node has opened comes first: `--set hand.device=mouse` names one that the patch does not declare.
@@ -102,10 +107,8 @@ DevicePort& EngineHost::use_device(DeviceSlot& slot, DeviceUse use, const Source
                                        slot.name));
     uses_->devices.emplace_back(&slot, use);
     if (use == DeviceUse::drive && !slot.port.info.actuates_torque && slot.port.info.fingers == 0) {
-        std::string notice =
-            fmt::format("device '{}' gives forces only: torques that the patch computes for it are dropped", slot.name);
-        if (std::ranges::find(opened_.notices, notice) == opened_.notices.end())
-            opened_.notices.push_back(std::move(notice));
+        notify(fmt::format("device '{}' gives forces only: torques that the patch computes for it are dropped",
+                           slot.name));
     }
     return slot.port;
 }

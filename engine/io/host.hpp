@@ -76,6 +76,8 @@ public:
     void keep();
     /// Closes the resources opened since `begin`.
     void discard();
+    /// Adds a message for the user to what was opened since `begin`.
+    void notify(std::string notice);
     /// Devices opened since `begin`.
     const std::vector<std::unique_ptr<DeviceSlot>>& opened_devices() const { return opened_.devices; }
     /// Any thread: abandons the thread that is opening a driver, if any. That thread gets an error when it returns.

@@ -67,8 +67,8 @@ void Recorder::service(Timeline& timeline, bool is_building, Flicks now) {
     if (!take_) return;
     if (!was_recorded_ && take_->size() > longest_journal_)
         return give_up(fmt::format("its journal has grown beyond {} MB", longest_journal_ >> 20));
-    note_limit();
     if (is_building) return;
+    note_limit();
     taps_.finish_past();
     // A plan that is on its way has its streams already, or was built without any.
     if (wants_ == records_ || timeline.is_changing()) return;
