@@ -41,21 +41,6 @@ bool is_without_preamble(std::string_view start) {
 
 bool has_dicom_mark(std::string_view start) { return start.size() >= mark_end && start.substr(128, 4) == "DICM"; }
 
-std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(
-             folder, std::filesystem::directory_options::skip_permission_denied)) {
-        // A DICOMDIR contains no images.
-        if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path())) continue;
-        files.push_back(entry.path());
-        if (files.size() > max_slice_files)
-            throw Error(fmt::format("{}: more than {} DICOM files; name the folder of one examination", folder.string(),
-                                    max_slice_files));
-    }
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
 // The images in a zip. Images of one name get their number, so that they stay different files.
 Images collect_zip(DicomReader& reader, const std::filesystem::path& path) {
     const auto archive = std::make_shared<const file::ZipFile>(path);
@@ -98,7 +83,7 @@ Images collect(DicomReader& reader, const std::filesystem::path& path) {
         return all;
     }
     Images all;
-    for (const auto& file : files_in(path)) {
+    for (const auto& file : dicom_files_in(path)) {
         leave_if_stopped();
         Images found = reader.images(file);
         all.insert(all.end(), found.begin(), found.end());
@@ -593,6 +578,21 @@ bool is_dicom_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::string start(mark_end, '\0');
     return file.read(start.data(), mark_end) && (has_dicom_mark(start) || is_without_preamble(start));
+}
+
+std::vector<std::filesystem::path> dicom_files_in(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(
+             folder, std::filesystem::directory_options::skip_permission_denied)) {
+        // A DICOMDIR contains no images.
+        if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path())) continue;
+        files.push_back(entry.path());
+        if (files.size() > max_slice_files)
+            throw Error(fmt::format("{}: more than {} DICOM files; name the folder of one examination", folder.string(),
+                                    max_slice_files));
+    }
+    std::sort(files.begin(), files.end());
+    return files;
 }
 
 std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const ReadOptions& options) {

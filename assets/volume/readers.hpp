@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tactus::volume {
 
@@ -19,6 +20,8 @@ std::unique_ptr<SliceReader> open_inv3(const std::filesystem::path& path);
 std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const ReadOptions& options);
 /// Detects the DICM mark after the preamble.
 bool is_dicom_file(const std::filesystem::path& path);
+/// The files that are read of a folder and those in it, ascending. Throws Error when there are too many.
+std::vector<std::filesystem::path> dicom_files_in(const std::filesystem::path& folder);
 
 /// Number of samples. Throws Error when an axis is empty or there are more than 1e9 samples.
 std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::string& file);

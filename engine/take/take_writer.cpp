@@ -7,6 +7,7 @@
 #include "assets/file/toml_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/volume/file_hash.hpp"
+#include "assets/volume/readers.hpp"
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "graph/patch/sub_patch.hpp"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <exception>
 #include <fstream>
 #include <set>
 #include <vector>
@@ -77,8 +79,19 @@ void add_strings(const toml::node& node, std::vector<std::string>& all) {
         for (const toml::node& value : *list) add_strings(value, all);
 }
 
-/// The files that a TOML file names, as recordings, bones and label maps; ascending. Patches are left out: a take holds
-/// its own.
+/// The files of images in a folder, none for one that holds `file` itself.
+std::vector<fs::path> images_in(const fs::path& folder, const fs::path& file) {
+    try {
+        const fs::path way = fs::canonical(file).lexically_relative(fs::canonical(folder));
+        if (!way.empty() && *way.begin() != "..") return {};
+        return volume::dicom_files_in(folder);
+    } catch (const std::exception&) {
+        return {};  // reported when it is loaded
+    }
+}
+
+/// The files that a TOML file names, as recordings, bones and label maps, or as folders of images; ascending. Patches are
+/// left out: a take holds its own.
 std::vector<fs::path> files_named_in(const fs::path& path) {
     std::vector<std::string> texts;
     try {
@@ -92,6 +105,8 @@ std::vector<fs::path> files_named_in(const fs::path& path) {
         const fs::path file = (path.parent_path() / bone::file_of_bone(text)).lexically_normal();
         std::error_code ignored;
         if (file.extension() != ".toml" && fs::is_regular_file(file, ignored)) found.insert(file);
+        else if (fs::is_directory(file, ignored))
+            for (const fs::path& image : images_in(file, path)) found.insert(image);
     }
     return {found.begin(), found.end()};
 }

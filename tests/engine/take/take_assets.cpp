@@ -49,3 +49,25 @@ TEST_CASE("the hash of an asset changes with every file that it names, in whatev
     fs::remove(bone);
     CHECK(hash() != first);
 }
+
+TEST_CASE("the hash of a task changes with the images of a folder that it spares, and with nothing else in it") {
+    const fs::path folder = test::scratch("take_folders");
+    const fs::path task = folder / "tasks/cut.toml";
+    write_asset_file(task, "about = \"..\"\n[[spare]]\nfile = \"../labels\"\n");
+    const fs::path image = folder / "labels/head/2.dcm", other = folder / "labels/notes.txt",
+                   beside = folder / "more/1.dcm";
+    const std::string dicom = std::string(128, '\0') + "DICM";
+    write_asset_file(folder / "labels/head/1.dcm", dicom);
+    for (const fs::path& file : {image, other, beside}) write_asset_file(file, dicom);
+    write_asset_file(other, "a");
+    const std::uint64_t first = take::hash_of_asset(task);
+    write_asset_file(image, dicom + "x");
+    CHECK(take::hash_of_asset(task) != first);
+    write_asset_file(image, dicom);
+    write_asset_file(other, "b");
+    // Named by "..", which is the folder of the task itself.
+    write_asset_file(beside, dicom + "x");
+    CHECK(take::hash_of_asset(task) == first);
+    fs::remove(image);
+    CHECK(take::hash_of_asset(task) != first);
+}
