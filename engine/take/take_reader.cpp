@@ -109,8 +109,11 @@ void read_streams(const ParsedJson& json, std::vector<TakeStreamInfo>& streams) 
 void read_event(const ParsedJson& json, Take& take) {
     if (json.contains("device")) take.devices.push_back(read_device(json));
     else if (json.contains("stream")) read_streams(json, take.streams);
-    else if (json.contains("values_end_s")) take.values_end_s = json.at("values_end_s");
-    else if (json.contains("plan")) {
+    else if (json.contains("values_end_s")) {
+        // One line for each output that ends earlier than those before.
+        const double end = json.at("values_end_s");
+        take.values_end_s = std::min(take.values_end_s.value_or(end), end);
+    } else if (json.contains("plan")) {
         TakenEdit edit;
         edit.number = json.at("plan");
         edit.when = json.at("when_flicks");

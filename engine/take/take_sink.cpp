@@ -35,11 +35,10 @@ void TakeSink::take(std::int64_t first, const std::byte* frames, std::size_t cou
 
 void TakeSink::write(std::int64_t first, const std::byte* frames, std::size_t count) {
     if (is_over_) return;
-    if (!end_) end_ = told_.end();
-    if (first + static_cast<std::int64_t>(count) > *end_) {
-        count = static_cast<std::size_t>(std::max<std::int64_t>(0, *end_ - first));
+    if (const std::int64_t end = std::max(first, told_.end(first)); end < first + static_cast<std::int64_t>(count)) {
+        count = static_cast<std::size_t>(end - first);
         is_over_ = true;
-        told_.ended();
+        told_.ended(end);
     }
     if (count == 0) return;
     for (std::size_t i = 0; i < files_.size(); ++i) {

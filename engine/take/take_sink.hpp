@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +25,9 @@ public:
     struct Told {
         std::function<void(const TakeFile&, std::int64_t start)> opened;
         std::function<void(const std::string& file, std::int64_t frames)> finished;
-        std::function<std::int64_t()> end;  ///< first activation without values, asked for at the first frame
-        std::function<void()> ended;  ///< called when values reached it
+        /// First activation without values, asked for before frames from `first` on are written.
+        std::function<std::int64_t(std::int64_t first)> end;
+        std::function<void(std::int64_t end)> ended;  ///< called when values reached it
         std::function<void()> cut;  ///< called when values are lost
     };
     TakeSink(std::filesystem::path folder, Flicks period, std::size_t frame_bytes, std::vector<TakeFile> files,
@@ -45,7 +45,6 @@ private:
     const std::vector<TakeFile> files_;
     const Told told_;
     std::vector<std::unique_ptr<TakeStreamWriter>> writers_;  // of the open files
-    std::optional<std::int64_t> end_;  // first activation without values
     bool is_over_ = false;
     std::int64_t update_ns_ = 0;  // time of the next header update; early, so that the first values survive a crash
 };

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <unordered_set>
+#include <vector>
 
 namespace tactus::run {
 class GroupRuntime;
@@ -37,10 +38,11 @@ public:
     /// the first frame.
     std::unique_ptr<io::Sink> sink(const std::filesystem::path& folder, const io::FrameLayout& layout,
                                    const run::GroupRuntime& group);
-    /// Values end where all files together have `bytes`: each file at the same time, which depends on nothing but the outputs.
-    /// 0: no limit, for files that are opened from then on.
+    /// Values end where all files together have `bytes`: each file at the same time, which depends on nothing but the outputs
+    /// and the times of edits. 0: no limit, for files whose values have not ended yet.
     void limit(std::uint64_t bytes);
-    /// Time at which values ended by the limit, s from the begin of the run; none: they did not. Any thread.
+    /// Time at which the values of an output ended first by the limit, s from the begin of the run; none: they did not. Any
+    /// thread.
     std::optional<double> limited_at() const;
     /// True if one of the files ends before the run.
     bool is_cut() const noexcept { return is_cut_; }
@@ -51,16 +53,26 @@ private:
     /// Returns a name that no other file of the take has.
     std::string file_for(const std::string& group);
     void opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group);
-    /// Returns the activation from which on a group of that period has no values.
-    std::int64_t end_of(Flicks period) const;
-    void limited();
+    /// The values of one group between two edits.
+    struct Part {
+        int group = 0;
+        double bytes_per_second = 0.0;
+        double begin = 0.0, end = 0.0;  // s; infinite: not known yet
+        bool has_values = false;
+    };
+    /// Returns the activation from which on a part has no values, which has some from `first` on.
+    std::int64_t end_of(std::size_t part, std::int64_t first, Flicks period);
+    /// After a change of the parts or of the limit.
+    void find_full();
+    void limited(double end);
 
     std::function<void(const std::string&)> write_line_;
     mutable std::mutex guard_;
-    std::map<std::string, std::int64_t> frames_;  // under it, as are the next two
-    double bytes_per_second_ = 0.0;  // of all outputs that had a sink
+    std::map<std::string, std::int64_t> frames_;  // under it, as are the next four
+    std::vector<Part> parts_;  // of each sink
     std::optional<double> limited_at_;  // s
     std::uint64_t max_bytes_ = 0;  // 0: no limit
+    double full_at_ = 0.0;  // s: all parts that have begun have the bytes of the limit
     std::atomic<bool> is_cut_{false};
     std::unordered_set<std::string> files_;
 };

@@ -104,6 +104,33 @@ TEST_CASE("a run that is recorded twice has two stretches of each output in one 
     std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("a request to record lifts the limit of a take that records already, and nothing says that its values ended",
+          "[virtual]") {
+    const VirtualClock clock;
+    const auto folder = scratch("lifted");
+    const auto bytes_with = [&](std::uint64_t limit, std::map<double, std::function<void(run::Engine&)>> deeds) {
+        std::vector<std::string> notices;
+        deeds[0.9] = [&](run::Engine& e) { notices = e.host().notices; };
+        run_with(folder, deeds, [limit](run::EngineOptions& options) {
+            options.take_values = run::TakeValues::all;
+            options.take->limit_values(limit);
+        });
+        const take::Take take = take::Take::load(folder);
+        CHECK(take.values_end_s.has_value() == (limit > 0 && deeds.size() == 1));
+        const auto tells = [](const std::string& notice) { return notice.find("holds values") != notice.npos; };
+        CHECK(std::ranges::any_of(notices, tells) == take.values_end_s.has_value());
+        std::uint64_t bytes = 0;
+        for (const take::TakeStreamInfo& info : take.streams)
+            bytes += 8 * static_cast<std::uint64_t>(info.channels) *
+                     static_cast<std::uint64_t>(take::TakeStreamReader(folder / info.file, info).frames());
+        std::filesystem::remove_all(folder);
+        return bytes;
+    };
+    const std::uint64_t all = bytes_with(0, {}), limit = all * 6 / 10;
+    CHECK(bytes_with(limit, {}) <= limit);
+    CHECK(bytes_with(limit, {{0.3, [](run::Engine& e) { e.record(true); }}}) > all * 95 / 100);
+}
+
 TEST_CASE("a value that was changed in the second stretch of a take is found", "[virtual]") {
     const VirtualClock clock;
     const auto folder = scratch("forged");

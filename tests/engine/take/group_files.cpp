@@ -139,13 +139,22 @@ TEST_CASE("values end where all files have the bytes that they may have, and the
     CHECK_THROWS_AS(take.require_values(), Error);
     fs::remove_all(folder);
 
-    // Edits at 0.05 s and 0.1 s, of 192, 384 and 576 kB/s: the rates of all count, so values end at 87 ms.
-    rendered(folder, {constants(3), constants(6), constants(9)}, 100'000);
-    std::uintmax_t bytes = 0;
-    for (const auto& file : files_of(take::Take::load(folder))) bytes += fs::file_size(folder / file);
-    CHECK(files_of(take::Take::load(folder)).size() == 2);
-    CHECK(bytes < 100'000 + 2 * 8'000);  // headers
+    // Edits at 0.05 s and 0.1 s, of 192, 384 and 576 kB/s: 9.6 kB, 19.2 kB, and 28.8 kB up to 0.15 s.
+    rendered(folder, {constants(3), constants(6), constants(9)}, 57'600);
+    const take::Take edited = take::Take::load(folder);
+    REQUIRE(edited.values_end_s);
+    CHECK(*edited.values_end_s == Approx(0.15));
+    std::map<std::string, std::int64_t> frames;
+    for (const take::TakeStreamInfo& info : edited.streams)
+        frames[info.file] = take::TakeStreamReader(folder / info.file, info).frames();
+    CHECK(frames == std::map<std::string, std::int64_t>{
+                        {"streams/1-kHz.wav", 50}, {"streams/1-kHz-2.wav", 50}, {"streams/1-kHz-3.wav", 50}});
     CHECK_FALSE(repeat(folder, 1).difference);
+    fs::remove_all(folder);
+
+    // Of two outputs the one that ends first: 84.5 frames at 1 kHz, 5.07 at 60 Hz.
+    rendered(folder, {constants(3, more)}, 16'548);
+    CHECK(take::Take::load(folder).values_end_s == Approx(5.0 / 60.0));
     fs::remove_all(folder);
 
     rendered(folder, {constants(3)}, 1'000'000);

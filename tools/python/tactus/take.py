@@ -93,7 +93,7 @@ class Take(Mapping[str, Stream]):
     @property
     def values_end(self) -> float | None:
         """Time in s from which on the run recorded no values (without `--values`); None: it recorded all."""
-        return next((event["values_end_s"] for event in self.events if "values_end_s" in event), None)
+        return min((event["values_end_s"] for event in self.events if "values_end_s" in event), default=None)
 
     def parts(self, port: str) -> list[Stream]:
         """The stretches of an output: an edit, or recording that is switched off and on, begins another file."""
