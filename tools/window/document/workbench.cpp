@@ -336,6 +336,7 @@ void Workbench::record(bool wanted) {
     has_take_ = true;
     if (runs) return run_->record(last_take_);
     choice_.record = last_take_;
+    choice_.record_values = true;
     run();
 }
 
