@@ -29,7 +29,7 @@ using TapMaker = std::function<std::unique_ptr<io::Sink>(const io::FrameLayout&,
 
 /// The values in a take. Its decisions repeat them to the bit.
 enum class TakeValues : std::uint8_t {
-    all,
+    all,  ///< from the begin, up to the end that TakeWriter::limit_values sets
     on_request,  ///< none until `Engine::record`; the take is not wanted before that, and may be given up until then
 };
 

@@ -65,7 +65,7 @@ UsedFiles used_files(const Protocol& protocol) {
     return used;
 }
 
-/// With the sounds of a recording set, and what a task names beside it.
+/// With the files that a recording set, a task or another TOML file names, in whatever folder.
 std::vector<FrozenFile> hashes_of(const std::vector<fs::path>& assets, const Protocol& protocol) {
     std::vector<FrozenFile> hashes;
     for (const fs::path& file : assets)
