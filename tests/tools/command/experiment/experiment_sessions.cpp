@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -142,18 +143,27 @@ TEST_CASE("seven subjects with three factors, catch trials and a table of orders
     INFO(o.err);
     REQUIRE(o.code == 0);
     // Trials of the first subject: its row, catch trials at the greatest level beside two levels of each condition.
-    int main = 0, caught = 0;
+    int main = 0;
     std::string conditions;
     for (const std::string& line : lines_of(slurp(folder.path / "data/sub-S01/trials.jsonl"))) {
         main += line.find("\"phase\":\"main\"") != std::string::npos ? 1 : 0;
-        caught += line.find("\"phase\":\"catch\"") != std::string::npos ? 1 : 0;
         for (const char* name : {"slowLow", "fastLow", "slowHigh", "fastHigh"})
             if (line.find(fmt::format("\"condition\":\"{}\"", name)) != std::string::npos &&
                 !conditions.ends_with(name))
                 conditions += name;
     }
     CHECK(main == 8);
-    CHECK(caught >= 0);
+    // A fifth of 7 times 8 trials or more.
+    int caught = 0;
+    for (int subject = 1; subject <= 7; ++subject)
+        for (const std::string& line :
+             lines_of(slurp(folder.path / fmt::format("data/sub-S{:02}/trials.jsonl", subject))))
+            if (line.find("\"phase\":\"catch\"") != std::string::npos) {
+                ++caught;
+                CHECK(line.find("\"level\":0.5,") != std::string::npos);
+            }
+    CHECK(caught >= 4);
+    CHECK(caught <= 28);
     CHECK(conditions == "slowLowfastLowslowHighfastHigh");
     o = folder.tactus("experiment analyse " + out + " --carry-over --bootstrap 0");
     INFO(o.out);
@@ -178,18 +188,21 @@ TEST_CASE("a session that is killed again and again ends as one that was not", "
     write_own(folder);
     const std::string out = at(folder, "data"), whole = at(folder, "whole");
     REQUIRE(folder.tactus(run_own(folder, "--subject P01 --out " + whole)).code == 0);
-    const std::string killed = fmt::format("timeout -s KILL {{}} {} {} > /dev/null 2>&1", tactus::test::command(),
-                                           run_own(folder, "--subject P01 --out " + out));
-    int kills = 0, before = 0;
-    for (int attempt = 0; attempt < 60; ++attempt) {
-        const double after = 0.35 + 0.07 * (attempt % 13) + 0.1 * (attempt / 13);
-        if (std::system(fmt::format(fmt::runtime(killed), after).c_str()) == 0) break;
-        ++kills;
-        const int kept = static_cast<int>(lines_of(slurp(folder.path / "data/sub-P01/trials.jsonl")).size());
-        CHECK(kept >= before);
-        before = kept;
+    // Killed at the beginning, and then each time that it has kept another trial and is a little further in the next one.
+    const fs::path kept = folder.path / "data/sub-P01/trials.jsonl";
+    int before = -1;
+    for (const char* later : {"0.1", "0", "0.02", "0.05", "0.1"}) {
+        const std::string killed = fmt::format(
+            "{} {} > /dev/null 2>&1 & while kill -0 $! && [ \"$(cat {} | wc -l)\" -le {} ]; do sleep 0.005; done; "
+            "sleep {}; "
+            "kill -KILL $!; wait $!; [ $? = 137 ]",
+            tactus::test::command(), run_own(folder, "--subject P01 --out " + out), kept.string(), before, later);
+        folder.write("kill.sh", killed);
+        CHECK(std::system(fmt::format("sh {} 2> /dev/null", at(folder, "kill.sh")).c_str()) == 0);
+        const int now = static_cast<int>(lines_of(slurp(kept)).size());
+        CHECK(now >= std::max(before, 0));
+        before = now;
     }
-    CHECK(kills > 2);
     REQUIRE(folder.tactus(run_own(folder, "--subject P01 --out " + out)).code == 0);
     CHECK(slurp(folder.path / "data/sub-P01/trials.jsonl") == slurp(folder.path / "whole/sub-P01/trials.jsonl"));
     const Outcome o = folder.tactus("experiment analyse " + out + " --takes --bootstrap 0");
@@ -218,8 +231,8 @@ TEST_CASE("keys end a session with q, and answers of a pipe are those of the tri
     const std::string run =
         fmt::format("experiment run {} --subject P01 --out {}", at(folder, "own.toml"), at(folder, "data"));
     // Two answers, then the end; a break after five trials asks for a key.
-    const std::string command = fmt::format("printf '12q' | {} {} > {} 2>&1",
-                                            tactus::test::command(), run, at(folder, "log"));
+    const std::string command =
+        fmt::format("printf '12q' | {} {} > {} 2>&1", tactus::test::command(), run, at(folder, "log"));
     REQUIRE(std::system(command.c_str()) == 0);
     CAPTURE(slurp(folder.path / "log"));
     const std::vector<std::string> trials = lines_of(slurp(folder.path / "data/sub-P01/trials.jsonl"));
