@@ -8,12 +8,17 @@
 #include "dsp/statistics/carry_over.hpp"
 #include "dsp/statistics/orders.hpp"
 #include "dsp/statistics/paired.hpp"
+#include "tools/analysis/experiment/run_experiment.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/rendered_run.hpp"
+#include "tools/run/scratch_folder.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <ctime>
@@ -25,6 +30,8 @@ namespace tactus::bench {
 namespace {
 
 using file::Json;
+
+constexpr double max_between_trials = 50e-3;  // s
 
 struct ExperimentsChoice {
     int studies = 10'000, observers = 400, subjects = 16, intervals = 100;
@@ -193,6 +200,37 @@ double processor_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// The most processor time between the end of a trial and the beginning of the next one, s: measures, answer, record, next level, and
+/// its patch compiled.
+double between_trials() {
+    constexpr int trials = 40;
+    const run::ScratchFolder scratch;
+    analysis::ExperimentChoice choice;
+    choice.protocol = experiment::load_protocol(run::find_experiment("stiffness"));
+    choice.out = scratch.path() / "data";
+    choice.subject = "P01";
+    std::atomic<bool> stop{false};
+    const std::atomic<bool> never{false};
+    compile::AssetCache assets;
+    double worst = 0.0, ended = -1.0;
+    int done_trials = 0;
+    analysis::ExperimentHooks hooks;
+    hooks.say = [](const std::string&) {};
+    hooks.confirm = [](const std::string&, char) { return true; };
+    hooks.ask = [&](const experiment::Protocol&) { return analysis::Answered{done_trials % 2, 0.3}; };
+    hooks.progress = [&](const analysis::TrialSpec&, int, int) { stop = ++done_trials == trials; };
+    hooks.perform = [&](const run::RunChoice& run, const experiment::Condition&, std::atomic<bool>&,
+                        analysis::TurnedLevel*) {
+        (void)run::load_plan(run, assets);
+        if (ended >= 0.0) worst = std::max(worst, processor_seconds() - ended);
+        analysis::LiveEnd end{run::render_run(run, assets, never, [](double) {}).summary, {}, false};
+        ended = processor_seconds();
+        return end;
+    };
+    run_experiment(choice, hooks, stop);
+    return worst;
+}
+
 Covered covered_thresholds(int observers) {
     Covered covered;
     psychophysics::FitSettings settings;
@@ -294,7 +332,8 @@ int bench_experiments(const ExperimentsChoice& choice) {
     const MethodErrors errors = adaptive_errors(choice.observers);
     const auto [saved, saved_low] = saved_trials(errors);
     const Covered covered = covered_thresholds(choice.intervals);
-    const bool ok = std::ranges::all_of(rates, &Rate::ok) && saved_low >= 20.0;
+    const double between = between_trials();
+    const bool ok = std::ranges::all_of(rates, &Rate::ok) && saved_low >= 20.0 && between <= max_between_trials;
     if (choice.json) {
         Json json{{"ok", ok}, {"rates", Json::array()}, {"adaptive", Json::array()}};
         for (const Rate& rate : rates)
@@ -309,6 +348,7 @@ int bench_experiments(const ExperimentsChoice& choice) {
         json["bootstrap_covers_percent"] = {
             {"constant", covered.constant}, {"quest_plus", covered.quest}, {"staircase", covered.stairs}};
         json["quest_plus_next_level_max_ms"] = 1e3 * covered.next_level;
+        json["between_trials_max_ms"] = 1e3 * between;
         json["trials_saved_percent"] = saved;
         json["trials_saved_low_percent"] = saved_low;
         fmt::print("{}\n", json.dump(2));
@@ -333,6 +373,8 @@ int bench_experiments(const ExperimentsChoice& choice) {
         "{:.1f} %, "
         "staircase {:.1f} %\nQUEST+ chose the next level within {:.2f} ms of processor time\n",
         choice.intervals, covered.constant, covered.quest, covered.stairs, 1e3 * covered.next_level);
+    fmt::print("between two trials of 'stiffness': at most {:.1f} ms of processor time (wanted: {:.0f} ms)\n",
+               1e3 * between, 1e3 * max_between_trials);
     return ok ? done : answer_is_no;
 }
 
