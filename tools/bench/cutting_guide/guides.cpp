@@ -163,7 +163,7 @@ int run(const GuidesChoice& choice) {
         jaws.push_back({file.filename().string(), mesh::load_mesh(file, mm)});
     }
     const run::ScratchFolder folder;
-    const bool has_admesh = std::system("admesh --version >/dev/null 2>&1") == 0;
+    const bool has_admesh = std::system("command -v admesh >/dev/null 2>&1") == 0;
     // Of each jaw its own guide, and the fibula's for its plan, in turn.
     std::map<std::string, Tally> tallies;
     for (int n = choice.first; n < choice.first + choice.count; ++n) {
