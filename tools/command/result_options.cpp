@@ -108,6 +108,10 @@ void check_result_files(const ResultChoice& choice, const std::vector<std::files
     outputs.insert(outputs.end(), others.begin(), others.end());
     file::check_outputs(files, outputs);
     const bool has_figure = choice.has_figure != ResultFigure::none;
+    std::string product;
+    if (const std::vector<std::string>& own = choice.product.endings; !own.empty())
+        product = fmt::format("; {}: written as {}{}{}", choice.product.about,
+                              fmt::join(own.begin(), own.end() - 1, ", "), own.size() > 1 ? " or " : "", own.back());
     for (const std::filesystem::path& out : choice.out) {
         const std::string ending = out.extension().string();
         const bool is_image = ending == ".svg" || ending == ".png";
@@ -116,7 +120,8 @@ void check_result_files(const ResultChoice& choice, const std::vector<std::files
             throw Error(fmt::format("{}: this result has no figure; write it as {}", out.string(), endings_of(choice)));
         if (!is_image && std::ranges::find(texts, ending) == texts.end())
             throw Error(fmt::format("{}: a result is written as {}{}", out.string(), endings_of(choice),
-                                    has_figure ? ", a figure as .svg or .png" : ""));
+                                    has_figure ? ", a figure as .svg or .png" : "") +
+                        product);
     }
 }
 
