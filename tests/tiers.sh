@@ -109,7 +109,7 @@ landing() {
     has_cases "$preset" fast slow display kernel live || status=1
     phase "tests: fast" run_ctest "$preset" "$(jobs)" -L '^fast$' || status=1
     # Cases with windows and processes wait most of their time; beside them the slow ones use the processors.
-    phase "tests: slow, display, kernel" run_ctest "$preset" "$(($(jobs) * 2))" -L '^(slow|display|kernel)$' || status=1
+    phase "tests: slow, display, kernel" run_ctest "$preset" "$(($(jobs) * 3 / 2))" -L '^(slow|display|kernel)$' || status=1
     chosen=$(slice "$preset")
     [ -z "$chosen" ] || phase "tests: slice of the long ones" run_ctest "$preset" "$(jobs)" -I "0,0,0,$chosen" || status=1
     phase "tests: live" run_ctest "$preset" 1 -L '^live' || status=1

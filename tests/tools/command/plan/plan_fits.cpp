@@ -274,7 +274,7 @@ TEST_CASE("a fragment does not go where a third one is, is told why it stays, an
     const Outcome blocked = folder.tactus("plan snap " + plan + " two one");
     INFO(blocked.out << blocked.err);
     CHECK(blocked.code == 1);
-    CHECK(fit_says(blocked.out, "two to one: blocked"));
+    CHECK(fit_says(blocked.out, "blocked\n"));
     CHECK(fit_says(blocked.out, "it would lie in 'third' with"));
     REQUIRE(folder.tactus("plan hide " + plan + " third").code == 0);
     // Nothing fits from too far away, and no distance is told.
