@@ -10,7 +10,7 @@ namespace tactus::fit {
 /// true fits reach, and the best value of a false fit that passes all other thresholds.
 /// strongest false one that the other thresholds let pass.
 struct Acceptance {
-    static constexpr double least_score = 0.30;  ///< (0.34; 0.28)
+    static constexpr double min_score = 0.30;  ///< (0.34; 0.28)
     static constexpr double max_rms = 0.68;  ///< of the distances within the overlap, in units of sigma (0.59; 0.75)
     static constexpr double min_margin = 0.12;  ///< to the second best pose, as fraction of the best score (0.18)
     static constexpr double min_share = 0.35;  ///< of the smaller of the two faces (0.41)

@@ -52,7 +52,7 @@ struct FitSettings {
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score
     double pull = 30.0;  ///< N, thesis mode: sum over all painted points
-    double least_score = Acceptance::least_score;  ///< below it the result is no_match
+    double min_score = Acceptance::min_score;  ///< below it the result is no_match
     double max_rms = Acceptance::max_rms;  ///< maximum rms distance in the overlap, fraction of sigma
     double min_overlap = Acceptance::min_area;  ///< m²; a smaller overlap is chance: no_match
     double min_share = Acceptance::min_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
@@ -63,8 +63,8 @@ struct FitSettings {
 
     /// Minimum scores of an uncertain fit and of a fit. Coarse voxels blur the relief: unrelated faces score up to 0.5 at
     /// 1 mm (0.28 at 0.5 mm and below); related ones score at least 0.65, or 0.42 for thin shafts.
-    double min_uncertain_score() const noexcept { return least_score + 0.8e3 * blur(); }
-    double min_fit_score() const noexcept { return least_score + 1.2e3 * blur(); }
+    double min_uncertain_score() const noexcept { return min_score + 0.8e3 * blur(); }
+    double min_fit_score() const noexcept { return min_score + 1.2e3 * blur(); }
 
 private:
     /// m, of sigma, beyond that of voxels of 0.5 mm.

@@ -183,7 +183,7 @@ std::vector<FacePair> mated_faces(const FragmentMatcher& matcher, std::span<cons
             if (body_of(m) < 0 || body_of(f) < 0 || body_of(m) == body_of(f)) continue;
             if (glm::length(place(m) - place(f)) > matcher.face(m).gyration + matcher.face(f).gyration) continue;
             // Chains of fits have errors before they are refined: half of what a fit by itself must have.
-            if (matcher.quality_of(energy, m, f, poses).score > 0.5 * Acceptance::least_score) pairs.emplace_back(m, f);
+            if (matcher.quality_of(energy, m, f, poses).score > 0.5 * Acceptance::min_score) pairs.emplace_back(m, f);
         }
     return pairs;
 }

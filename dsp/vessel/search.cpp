@@ -219,7 +219,7 @@ private:
         std::vector<Tube> found;
         for (const auto& [score, peak] : peaks) {
             const Tube tube = settled(from, peak, step, recent);
-            if (tube.score < search_.least_score || tube.contrast < 0.5 * min_contrast(tube.radius) * recent.contrast) {
+            if (tube.score < search_.min_score || tube.contrast < 0.5 * min_contrast(tube.radius) * recent.contrast) {
                 if (near_excluded(tube)) refused_ = End::excluded;
                 else if (search_.scan.inside_by(tube.centre) < tube.radius) refused_ = End::border;
                 else if (tube.contrast < 0.5 * min_contrast(tube.radius) * recent.contrast)

@@ -16,7 +16,7 @@ struct Search {
     Sampling sampling;
     /// Thresholds of t-statistics that pure noise does not reach (`tactus bench vessel --case noise`): of one step, of
     /// the mean over the look-ahead, of the tube at the seed, and of the mean over the nodes of a whole branch.
-    double least_score = 3.5, min_mean = 5.0, min_start = 6.0, min_branch = 7.5;
+    double min_score = 3.5, min_mean = 5.0, min_start = 6.0, min_branch = 7.5;
 };
 
 /// Returns the distance from the axis to the edge of the vessel, m, where the brightness, averaged along the axis,

@@ -52,12 +52,12 @@ std::vector<Vec3> half_sphere() {
 
 /// The tube of least radius whose score is not surpassed by the next larger one: the score of what holds a vessel and
 /// its neighbours grows with the number of samples. Only tubes of at least half of the best contrast.
-Tube first_peak(std::vector<Tube> tubes, double least_score) {
+Tube first_peak(std::vector<Tube> tubes, double min_score) {
     std::ranges::stable_sort(tubes, [](const Tube& a, const Tube& b) { return a.radius < b.radius; });
     std::vector<Tube> different;  // fits of several radii often end at one tube
     double contrast = 0.0;
     for (const Tube& tube : tubes) {
-        if (tube.score >= least_score) contrast = std::max(contrast, tube.contrast);
+        if (tube.score >= min_score) contrast = std::max(contrast, tube.contrast);
         if (!different.empty() && tube.radius < 1.2 * different.back().radius) {
             if (tube.score > different.back().score) different.back() = tube;
         } else {
@@ -69,7 +69,7 @@ Tube first_peak(std::vector<Tube> tubes, double least_score) {
         const Tube& tube = different[n];
         if (tube.score > best.score) best = tube;
         const bool is_peak = n + 1 == different.size() || different[n + 1].score < tube.score;
-        if (is_peak && tube.score >= least_score && tube.contrast > 0.5 * contrast) return tube;
+        if (is_peak && tube.score >= min_score && tube.contrast > 0.5 * contrast) return tube;
     }
     return best;
 }

@@ -108,18 +108,18 @@ void GenerationBuilder::limit_stiffness() {
                 if (loop.to == sink.name) felt = std::min(felt, stable_share * loop.limit);
         if (felt == HUGE_VAL) continue;
         Param& param = *spring.param;
-        const double most = felt / spring.scale;
-        if (!spring.is_driven && param.value > most * (1.0 + 1e-9)) {
-            const std::string told =
+        const double max_stiffness = felt / spring.scale;
+        if (!spring.is_driven && param.value > max_stiffness * (1.0 + 1e-9)) {
+            const std::string text =
                 fmt::format("{} = {:.4g} N/mm is felt as {:.4g} N/mm, but device '{}' {} {:.4g} N/mm{}; ", spring.name,
                             param.value * 1e-3, param.value * spring.scale * 1e-3, info.name,
                             felt < stated ? "is stable up to" : "states that it can be", felt * 1e-3,
                             felt < stated ? "" : " stiff");
             if (is_declared(*slot))
-                throw Error(spring.where, told + fmt::format("lower it to {:.4g} N/mm", most * 1e-3));
-            context_.host.notify(told + fmt::format("it is lowered to {:.4g} N/mm", most * 1e-3));
+                throw Error(spring.where, text + fmt::format("lower it to {:.4g} N/mm", max_stiffness * 1e-3));
+            context_.host.notify(text + fmt::format("it is lowered to {:.4g} N/mm", max_stiffness * 1e-3));
         }
-        param.max = std::max(param.min, std::min(param.max, most));
+        param.max = std::max(param.min, std::min(param.max, max_stiffness));
         param.value = std::min(param.value, param.max);
     }
 }

@@ -44,7 +44,7 @@ struct FragmentMatcher {
     Choice partners{{"standing", "all"}, "standing: fragments that are locked or fitted; all: every other fragment"};
     Choice reach{{"near", "anywhere"},
                  "near: search from the present pose; anywhere: also each face on each other face in turn"};
-    Param least_score{"0", "0", "1", "minimum score of a match, where it is more than the 0.3 that every fit needs"};
+    Param min_score{"0", "0", "1", "minimum score of a match, where it is more than the 0.3 that every fit needs"};
     Param points{structural, "700", "100", "20000", "number of points per face"};
 
     std::vector<Visual> visuals() const {
@@ -107,7 +107,7 @@ private:
         }
         const std::span<const Pose> poses(poses_.data(), count);
         const std::span<const char> stands(stands_.data(), count);
-        matcher_->settings.fit.least_score = std::max<double>(fit::Acceptance::least_score, least_score);
+        matcher_->settings.fit.min_score = std::max<double>(fit::Acceptance::min_score, min_score);
         fit::FragmentMatch match = judged(matcher_->near(place, poses, stands));
         if (match.verdict != fit::FitVerdict::fit && reach.index == 1) {
             if (was_ != place) matcher_->begin_search();
@@ -212,7 +212,7 @@ private:
 };
 
 TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, fragment, partner, verdict, score, margin, rms, gap,
-            penetration, overlap, faces, plan, partners, reach, least_score, points)
+            penetration, overlap, faces, plan, partners, reach, min_score, points)
 TACTUS_VISUALS(FragmentMatcher)
 
 }  // namespace tactus::nodes

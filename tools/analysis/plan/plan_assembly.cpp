@@ -53,7 +53,7 @@ std::vector<Edge> all_edges(const PlanMatching& matching, const fit::FragmentMat
                                       parts.pose(edge.b).inverse() * parts.pose(edge.a));
     });
     // Other faces of the same fragments may still raise what a pair shows by itself.
-    const double least = 0.7 * matching.settings().fit.least_score;
+    const double least = 0.7 * matching.settings().fit.min_score;
     std::erase_if(edges, [&](const Edge& e) { return e.pair.score < least; });
     std::ranges::stable_sort(edges, std::ranges::greater{}, [](const Edge& e) { return e.pair.worth(); });
     return edges;

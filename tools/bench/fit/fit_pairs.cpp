@@ -223,7 +223,7 @@ private:
             trial.partner = j;
             const fit::FitSettings usual = matcher_->settings.fit;
             fit::FitSettings& s = matcher_->settings.fit;
-            s.least_score = s.min_margin = s.min_share = s.min_overlap = 0.0;
+            s.min_score = s.min_margin = s.min_share = s.min_overlap = 0.0;
             s.max_rms = 2.0;
             s.max_far = std::numeric_limits<double>::infinity();
             const fit::FragmentMatch loose = look(i, poses, is_global);
