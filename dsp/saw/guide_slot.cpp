@@ -15,7 +15,7 @@ namespace tactus::saw {
 namespace {
 
 constexpr double entry = 0.3e-3;  // m by which a blade may miss the slot that it enters; it keeps that room
-constexpr double ledge_reach = 3e-3;  // m from a ledge within which it holds a blade
+constexpr double ledge_reach = 3e-3;  // m from a ledge: within it a whole blade is taken, and a part of it stays held
 constexpr double max_gap = 5e-3;  // m from its slot at which a blade is released
 constexpr double rounding = 1e-11;  // m
 constexpr double taken_over = 0.1e-3;  // m of the hand over which a wall takes over the force on the blade
@@ -199,7 +199,7 @@ void SlotHold::enter(std::span<const GuideSlot> slots, const Pose& hand) noexcep
     for (std::size_t n = 0; n < slots.size(); ++n) {
         const Placement at = placed(slots[n].frame, hand);
         if (!is_upright(at.pose) || gap(slots[n], at) > 0.0) continue;
-        const double missed = miss(slots[n], at), away = apart(slots[n], at);
+        const double missed = miss(slots[n], at), away = farthest(slots[n], at);
         if (missed > entry || away > nearest || (slot_ >= 0 && away == nearest)) continue;
         nearest = away;
         slot_ = static_cast<int>(n);
@@ -230,6 +230,13 @@ double SlotHold::miss(const GuideSlot& slot, const Placement& at) const noexcept
 double SlotHold::apart(const GuideSlot& slot, const Placement& at) const noexcept {
     if (std::isfinite(slot.other_wall)) return 0.0;
     return std::max(0.0, -beyond(slot, at, deepest(slot, at, -1.0, at.plane), at.plane));
+}
+
+double SlotHold::farthest(const GuideSlot& slot, const Placement& at) const noexcept {
+    if (std::isfinite(slot.other_wall)) return 0.0;
+    const Touch top = deepest(slot, at, 1.0, at.plane, 0.0);
+    return std::max(0.0, at.plane[0] + at.plane[1] * (top.x - at.clamp.x) + at.plane[2] * (top.y - at.clamp.y) -
+                             top.recess - bounds(slot)[0]);
 }
 
 /// Projection of a plane of the hand onto the convex set that the walls permit. Of all points of the blade at most three

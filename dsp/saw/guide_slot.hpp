@@ -116,6 +116,9 @@ private:
     double miss(const GuideSlot& slot, const Placement& at) const noexcept;
     /// m between the blade of the hand and a ledge; 0 between two walls.
     double apart(const GuideSlot& slot, const Placement& at) const noexcept;
+    /// m from a ledge of the part of the blade that is farthest from it; 0 between two walls. Ledges of neighbouring cuts
+    /// are open to each other: a blade on one of them crosses the other.
+    double farthest(const GuideSlot& slot, const Placement& at) const noexcept;
     /// m, of the springs, in the metric of the clamp.
     double stretch() const noexcept;
 
