@@ -203,9 +203,24 @@ private:
         desk_->end_typing();
         if (wishes.start_page) return desk_->open_start_page();
         asked_ = std::move(wishes);
-        using Leaving = Questions::Leaving;
-        const bool asks = !take_ && desk_->questions.has_unsaved();
-        desk_->questions.leaving = asks ? Leaving::asks : Leaving::leaves;
+        is_leaving_ = true;
+    }
+
+    /// Brings what waits in a pause into the plan before the person is asked what becomes of it. True: not done yet.
+    bool must_wait_to_leave() {
+        is_closing_ = is_closing_ || window_.wants_to_close();
+        if (!is_closing_ && !is_leaving_) return false;
+        if (!take_ && desk_->brings_what_waits()) {
+            window_.keep_open();
+            return true;
+        }
+        if (std::exchange(is_closing_, false)) window_.close();
+        if (std::exchange(is_leaving_, false)) {
+            using Leaving = Questions::Leaving;
+            const bool asks = !take_ && desk_->questions.has_unsaved();
+            desk_->questions.leaving = asks ? Leaving::asks : Leaving::leaves;
+        }
+        return false;
     }
 
     /// Opens something; where that fails, what was open stays.
@@ -248,6 +263,7 @@ private:
         // A run of limited length closes the window at its end; a script is run to its end.
         if (choice_.seconds && bench_->running() && !runs && (!script_ || script_->is_done())) return false;
         if (script_ && script_->wants_to_close()) return view_.keep_running;
+        if (must_wait_to_leave()) return std::nullopt;
         using Leaving = Questions::Leaving;
         Questions& questions = desk_->questions;
         if (questions.leaving == Leaving::none && desk_->farewell == Farewell::none) asked_ = {};
@@ -297,6 +313,7 @@ private:
     std::unique_ptr<Workbench> bench_;
     std::unique_ptr<Desk> desk_;
     bool is_wanted_by_script_ = false;
+    bool is_closing_ = false, is_leaving_ = false;  ///< for what is asked, once all steps are in the plan
     DeskWishes wanted_, asked_;  ///< asked: waits for what becomes of unsaved edits
     WindowMemory memory_;
     fs::path scan_;  ///< given for what is opened first; another case has another one

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A window that goes with edits that are not saved, on a display without a screen.
+#include "assets/plan/plan_file.hpp"
+#include "assets/plan/plan_files.hpp"
+#include "tests/support/places.hpp"
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/window/on_display.hpp"
@@ -8,6 +11,7 @@
 #include <functional>
 
 namespace fs = std::filesystem;
+using namespace tactus;
 using namespace tactus::test;
 
 namespace {
@@ -77,6 +81,25 @@ TEST_CASE("a window that a script closes keeps the edits, and the next window re
     CHECK(on(display, folder, run_voice).code == 0);
     CHECK(slurp(patch) == voice);
     CHECK_FALSE(fs::exists(kept));
+}
+
+TEST_CASE("a window closed in a pause asks about the steps that wait, and saves them", "[display]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    const fs::path bundled = library_folder() / "cases/mandible-twelve/case.plan.json", file = folder.path / "a.plan.json";
+    plan::CasePlan plan = plan::load_case_plan(bundled);
+    plan::make_files_absolute(plan, bundled.parent_path());
+    plan::save_case_plan(plan, file);
+    const auto is_locked = [&] { return plan::state_of(plan::load_case_plan(file)).arrangement.is_locked(2); };
+    REQUIRE_FALSE(is_locked());
+    const std::string waits = "run\nuntil 0.3\npause\nuntil paused\npress \"part fragment_03\"\nframes 3\n"
+                              "press \"lock\"\nframes 3\n";
+    folder.write("script", waits + "shut\nframes 100\npress \"save steps\"\nwait 30\n");
+    const Outcome done =
+        on(display, folder, "view a.plan.json --layout plan --view-script script");
+    INFO(done.err);
+    CHECK(done.code == 0);
+    CHECK(is_locked());
 }
 
 TEST_CASE("a window that SIGTERM or the end of --seconds takes away keeps the edits", "[display]") {

@@ -81,6 +81,8 @@ public:
     void open_start_page();
     /// What is being typed in the patch becomes an edit, as if its field had been left: before it is saved or left behind.
     void end_typing();
+    /// Before the plan is left: true while a step that was asked for is not in it yet.
+    bool brings_what_waits() { return plan_.case_run().brings_what_waits(); }
     /// A file dropped on the window.
     void take_dropped(const std::filesystem::path& file);
 

@@ -152,7 +152,9 @@ bool Desk::shows_preview() const {
 }
 
 void Desk::keep_plan() noexcept {
-    if (plan_document_) plan_document_->keep();
+    if (!plan_document_) return;
+    plan_.case_run().take_what_waits();
+    plan_document_->keep();
 }
 
 void Desk::ask_save_as() {

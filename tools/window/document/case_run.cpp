@@ -260,6 +260,16 @@ void CaseRun::do_what_is_left() {
     else bench_.tell(fmt::format("{} not done: the run has ended", counted(left.size(), "step")), true);
 }
 
+bool CaseRun::brings_what_waits() {
+    if (!document_ || !commands_.is_under_way()) return false;
+    if (is_live() && commands_.is_paused()) bench_.stop();
+    return true;
+}
+
+void CaseRun::take_what_waits() {
+    if (document_ && commands_.is_under_way()) do_what_is_left();
+}
+
 void CaseRun::give(const plan::PlanCommand& command) {
     if (changes_document()) change_document(command);
     else if (is_live()) commands_.add(command);

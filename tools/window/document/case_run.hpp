@@ -81,6 +81,11 @@ public:
     bool is_settled() const;
     /// What was asked of the plan is not yet in the run.
     bool is_asked() const { return commands_.is_under_way(); }
+    /// Before the opened plan is left, at each picture: true while a step that was asked for is not in it yet. A run that
+    /// is paused ends first.
+    bool brings_what_waits();
+    /// The same where no picture follows: what waits is put into the opened plan at once, and the run is left.
+    void take_what_waits();
     /// A person holds a fragment: where it is now is no step yet.
     bool is_holding() const;
     /// For a change with which the run is to begin again. False: not now; the reason is in the messages. In a pause they

@@ -54,6 +54,23 @@ TEST_CASE("steps that a run was asked for in a pause are in the opened plan when
     CHECK_FALSE(rig.run.is_asked());
 }
 
+TEST_CASE("a plan that is left in a pause has the steps that waited, whether pictures follow or not", "[virtual][slow]") {
+    PlanRig rig("planning-trauma");
+    PlanDocument document(rig.run.newest(), rig.folder.path / "opened.plan.json");
+    rig.run.use(&document);
+    CHECK_FALSE(rig.run.brings_what_waits());
+    REQUIRE(rig.pause(true));
+    rig.run.toggle_lock({3});
+    rig.pictures(20);
+    const auto is_locked = [&] { return plan::state_of(document.plan()).arrangement.is_locked(3); };
+    REQUIRE_FALSE(is_locked());
+    SECTION("pictures follow") { CHECK(rig.comes([&] { return !rig.run.brings_what_waits(); }, 1000)); }
+    SECTION("none follows") { rig.run.take_what_waits(); }
+    CHECK(is_locked());
+    CHECK(document.has_unsaved_steps());
+    CHECK_FALSE(rig.run.is_asked());
+}
+
 TEST_CASE("a run whose time goes slowly does each of several steps", "[virtual][slow]") {
     PlanRig rig("planning-trauma", 20.0);
     rig.run.toggle_lock({3});
