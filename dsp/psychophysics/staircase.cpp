@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace tactus::psychophysics {
 
@@ -39,17 +38,9 @@ void Staircase::answer(bool correct) {
 void Staircase::move(int direction) {
     if (direction_ != 0 && direction != direction_) reversals_.push_back(level_);
     direction_ = direction;
-    const double factor = reversals_.empty() ? rule_.first_factor : 1.0;
+    const double factor = std::max(1.0, std::ldexp(rule_.first_factor, -static_cast<int>(reversals_.size())));
     const double step = direction > 0 ? rule_.step_up : -rule_.step_down;
     level_ = std::clamp(level_ + factor * step, rule_.min, rule_.max);
-}
-
-std::optional<double> Staircase::estimate() const {
-    if (reversals_.size() < 4) return std::nullopt;
-    std::size_t used = reversals_.size() - reversals_.size() / 4;
-    used -= used % 2;
-    return std::accumulate(reversals_.end() - static_cast<std::ptrdiff_t>(used), reversals_.end(), 0.0) /
-           static_cast<double>(used);
 }
 
 }  // namespace tactus::psychophysics

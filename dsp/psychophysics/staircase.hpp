@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace tactus::psychophysics {
@@ -16,7 +15,9 @@ struct StaircaseRule {
     int down = 2;
     double start = 0.0;
     double step_up = 0.1, step_down = 0.1;  ///< in units of the level
-    double first_factor = 4.0;  ///< steps are this many times larger until the first reversal; 1: always equal
+    /// Steps are this many times larger until the first reversal; each reversal halves the factor, down to 1. The staircase comes
+    /// back sooner from a run of lucky guesses than with the final step alone.
+    double first_factor = 4.0;
     double min = -1.0, max = 1.0;
     int reversals = 12;  ///< it ends there
     int max_trials = 200;
@@ -38,8 +39,6 @@ public:
     }
     int trials() const { return trials_; }
     const std::vector<double>& reversals() const { return reversals_; }  ///< levels
-    /// Mean level of the last reversals, an even number, without those of the first quarter; none below 4 reversals.
-    std::optional<double> estimate() const;
 
 private:
     void move(int direction);

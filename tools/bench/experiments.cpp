@@ -2,7 +2,7 @@
 // How often the tests of experiments err, what their intervals cover, and how many trials adaptive methods need.
 #include "assets/file/json.hpp"
 #include "dsp/core/random.hpp"
-#include "dsp/psychophysics/fit.hpp"
+#include "dsp/psychophysics/posterior.hpp"
 #include "dsp/psychophysics/quest_plus.hpp"
 #include "dsp/psychophysics/staircase.hpp"
 #include "dsp/statistics/carry_over.hpp"
@@ -32,9 +32,11 @@ namespace {
 using file::Json;
 
 constexpr double max_between_trials = 50e-3;  // s
+constexpr double max_bias = 2.0;  // percent of the threshold
+constexpr int biased_below = 60;  // trials: fewer do not suffice for it
 
 struct ExperimentsChoice {
-    int studies = 10'000, observers = 400, subjects = 16, intervals = 100;
+    int studies = 10'000, observers = 1000, subjects = 16, intervals = 100;
     bool json = false;
 };
 
@@ -142,9 +144,7 @@ psychophysics::QuestSettings wide_prior() {
     return settings;
 }
 
-MethodErrors adaptive_errors(int observers) {
-    MethodErrors errors{std::vector<std::vector<double>>(trial_counts.size()),
-                        std::vector<std::vector<double>>(trial_counts.size())};
+psychophysics::StaircaseRule two_down_one_up() {
     psychophysics::StaircaseRule rule;
     rule.start = 0.8;
     rule.min = -1.5;
@@ -152,9 +152,20 @@ MethodErrors adaptive_errors(int observers) {
     rule.step_up = rule.step_down = 0.05;
     rule.reversals = 1000;
     rule.max_trials = trial_counts.back();
-    psychophysics::FitSettings settings;
-    settings.lapse = 0.02;
-    settings.slope = 3.0;  // few trials do not determine it
+    return rule;
+}
+
+/// That of the analysis of an experiment.
+psychophysics::PosteriorSettings posterior_settings() {
+    const psychophysics::StaircaseRule rule = two_down_one_up();
+    return {psychophysics::Form::weibull, 0.5, 0.02, wide_prior().slopes, rule.min, rule.max};
+}
+
+MethodErrors adaptive_errors(int observers) {
+    MethodErrors errors{std::vector<std::vector<double>>(trial_counts.size()),
+                        std::vector<std::vector<double>>(trial_counts.size())};
+    const psychophysics::StaircaseRule rule = two_down_one_up();
+    const psychophysics::PosteriorSettings settings = posterior_settings();
     for (int o = 0; o < observers; ++o) {
         const auto seed = static_cast<std::uint64_t>(o);
         const double threshold = -0.5 + Random{mix(seed + 5)}.uniform(0);
@@ -172,9 +183,9 @@ MethodErrors adaptive_errors(int observers) {
                 correct.push_back(random.uniform(static_cast<std::uint64_t>(trial)) < truth.at(levels.back()));
                 answer(levels.back(), correct.back());
                 if (trial != trial_counts[next]) continue;
-                const auto fit =
-                    psychophysics::fit_psychometric(psychophysics::count_levels(levels, correct), settings);
-                into[next++].push_back(fit.function.level_of(rule.target()) - wanted);
+                const auto level = psychophysics::posterior_level(psychophysics::count_levels(levels, correct),
+                                                                  settings, rule.target());
+                into[next++].push_back(level.median - wanted);
             }
         };
         psychophysics::QuestPlus quest(wide_prior());
@@ -186,10 +197,13 @@ MethodErrors adaptive_errors(int observers) {
     return errors;
 }
 
-/// How often the bootstrap interval of 95 % covers the threshold, percent, and the most processor time in which QUEST+ chose
-/// the next level, s.
+/// How often intervals of 95 % cover the threshold, percent.
+struct Coverage {
+    double bootstrap = 0.0, posterior = 0.0;
+};
+/// And the most processor time in which QUEST+ chose the next level, s.
 struct Covered {
-    double constant = 0.0, quest = 0.0, stairs = 0.0;
+    Coverage constant, quest, stairs;
     double next_level = 0.0;
 };
 
@@ -235,20 +249,14 @@ Covered covered_thresholds(int observers) {
     Covered covered;
     psychophysics::FitSettings settings;
     settings.lapse = 0.02;
-    psychophysics::StaircaseRule rule;
-    rule.start = 0.8;
-    rule.min = -1.5;
-    rule.max = 1.5;
-    rule.step_up = rule.step_down = 0.05;
-    rule.reversals = 1000;
-    constexpr int trials = 120;
-    rule.max_trials = trials;
+    const psychophysics::StaircaseRule rule = two_down_one_up();
+    const int trials = rule.max_trials;
     for (int o = 0; o < observers; ++o) {
         const auto seed = static_cast<std::uint64_t>(o);
         const psychophysics::Psychometric truth{psychophysics::Form::weibull, -0.5 + Random{mix(seed + 9)}.uniform(0),
                                                 3.0, 0.5, 0.02};
         const double p = rule.target(), wanted = truth.level_of(p);
-        const auto covers = [&](auto&& level_of, auto&& answer, std::uint64_t stream) {
+        const auto count_covers = [&](auto&& level_of, auto&& answer, std::uint64_t stream, Coverage& coverage) {
             const Random random{mix(seed) ^ mix(stream)};
             std::vector<double> levels;
             std::vector<bool> correct;
@@ -259,22 +267,25 @@ Covered covered_thresholds(int observers) {
             }
             const auto counts = psychophysics::count_levels(levels, correct);
             const auto fit = psychophysics::fit_psychometric(counts, settings);
-            const auto interval = psychophysics::bootstrap_fit(counts, settings, fit, p, 199, 0.95, seed).threshold;
-            return interval.low <= wanted && wanted <= interval.high ? 100.0 / observers : 0.0;
+            const auto add = [&](const psychophysics::Interval& interval, double& percent) {
+                percent += interval.low <= wanted && wanted <= interval.high ? 100.0 / observers : 0.0;
+            };
+            add(psychophysics::bootstrap_fit(counts, settings, fit, p, 199, 0.95, seed).threshold, coverage.bootstrap);
+            add(psychophysics::posterior_level(counts, posterior_settings(), p).interval, coverage.posterior);
         };
         psychophysics::QuestPlus quest(wide_prior());
-        covered.quest += covers([&](int) { return quest.level(); },
-                                [&](double level, bool right) {
-                                    const double begin = processor_seconds();
-                                    quest.answer(level, right);
-                                    covered.next_level = std::max(covered.next_level, processor_seconds() - begin);
-                                },
-                                11);
+        count_covers([&](int) { return quest.level(); },
+                     [&](double level, bool right) {
+                         const double begin = processor_seconds();
+                         quest.answer(level, right);
+                         covered.next_level = std::max(covered.next_level, processor_seconds() - begin);
+                     },
+                     11, covered.quest);
         psychophysics::Staircase stairs(rule);
-        covered.stairs +=
-            covers([&](int) { return stairs.level(); }, [&](double, bool right) { stairs.answer(right); }, 12);
-        covered.constant +=
-            covers([&](int trial) { return truth.threshold - 0.3 + 0.15 * (trial % 5); }, [](double, bool) {}, 13);
+        count_covers([&](int) { return stairs.level(); }, [&](double, bool right) { stairs.answer(right); }, 12,
+                     covered.stairs);
+        count_covers([&](int trial) { return truth.threshold - 0.3 + 0.15 * (trial % 5); }, [](double, bool) {}, 13,
+                     covered.constant);
     }
     return covered;
 }
@@ -327,13 +338,25 @@ std::pair<double, double> saved_trials(const MethodErrors& errors) {
     return {saved([](std::size_t o) { return o; }), all[25]};
 }
 
+/// Of either method, from a number of trials on that a session has.
+double max_bias_percent(const MethodErrors& errors) {
+    double greatest = 0.0;
+    for (std::size_t i = 0; i < trial_counts.size(); ++i)
+        if (trial_counts[i] >= biased_below)
+            greatest = std::max({greatest, std::abs(bias_percent(errors.quest[i])),
+                                 std::abs(bias_percent(errors.stairs[i]))});
+    return greatest;
+}
+
 int bench_experiments(const ExperimentsChoice& choice) {
     const std::vector<Rate> rates = error_rates(choice);
     const MethodErrors errors = adaptive_errors(choice.observers);
     const auto [saved, saved_low] = saved_trials(errors);
     const Covered covered = covered_thresholds(choice.intervals);
     const double between = between_trials();
-    const bool ok = std::ranges::all_of(rates, &Rate::ok) && saved_low >= 20.0 && between <= max_between_trials;
+    const double bias = max_bias_percent(errors);
+    const bool ok = std::ranges::all_of(rates, &Rate::ok) && saved_low >= 20.0 && between <= max_between_trials &&
+                    bias < max_bias;
     if (choice.json) {
         Json json{{"ok", ok}, {"rates", Json::array()}, {"adaptive", Json::array()}};
         for (const Rate& rate : rates)
@@ -345,8 +368,13 @@ int bench_experiments(const ExperimentsChoice& choice) {
                                         {"quest_bias_percent", bias_percent(errors.quest[i])},
                                         {"staircase_rmse_log10", rms(errors.stairs[i])},
                                         {"staircase_bias_percent", bias_percent(errors.stairs[i])}});
-        json["bootstrap_covers_percent"] = {
-            {"constant", covered.constant}, {"quest_plus", covered.quest}, {"staircase", covered.stairs}};
+        json["max_bias_percent"] = bias;
+        json["bootstrap_covers_percent"] = {{"constant", covered.constant.bootstrap},
+                                            {"quest_plus", covered.quest.bootstrap},
+                                            {"staircase", covered.stairs.bootstrap}};
+        json["posterior_covers_percent"] = {{"constant", covered.constant.posterior},
+                                            {"quest_plus", covered.quest.posterior},
+                                            {"staircase", covered.stairs.posterior}};
         json["quest_plus_next_level_max_ms"] = 1e3 * covered.next_level;
         json["between_trials_max_ms"] = 1e3 * between;
         json["trials_saved_percent"] = saved;
@@ -359,7 +387,8 @@ int bench_experiments(const ExperimentsChoice& choice) {
         fmt::print("{:<58} {:>6.2f} %   {:.1f} to {:.1f}{}\n", rate.name, rate.percent, rate.low, rate.high,
                    rate.ok() ? "" : "  BEYOND");
     fmt::print(
-        "\n{} simulated observers, thresholds over 1 decade, prior of 1.6; two-alternative choice, same fit\n{:>7} "
+        "\n{} simulated observers, thresholds over 1 decade, prior of 1.6; two-alternative choice, medians of the "
+        "same posterior\n{:>7} "
         "{:>22} {:>26}\n",
         choice.observers, "trials", "QUEST+ rmse, bias", "2-down 1-up rmse, bias");
     for (std::size_t i = 0; i < trial_counts.size(); ++i)
@@ -368,11 +397,14 @@ int bench_experiments(const ExperimentsChoice& choice) {
     fmt::print(
         "QUEST+ needs {:.0f} % fewer trials than a staircase of {} (at least {:.0f} %, one-sided bound of 95 %)\n",
         saved, trial_counts[3], saved_low);
-    fmt::print(
-        "\nbootstrap intervals of 95 % after 120 trials that cover, {} observers: constant stimuli {:.1f} %, QUEST+ "
-        "{:.1f} %, "
-        "staircase {:.1f} %\nQUEST+ chose the next level within {:.2f} ms of processor time\n",
-        choice.intervals, covered.constant, covered.quest, covered.stairs, 1e3 * covered.next_level);
+    fmt::print("largest bias from {} trials on: {:.2f} %   below {:.0f} %{}\n", biased_below, bias, max_bias,
+               bias < max_bias ? "" : "  BEYOND");
+    fmt::print("\nintervals of 95 % after {} trials that cover, {} observers\n{:<18} {:>11} {:>11}\n", trial_counts.back(),
+               choice.intervals, "", "bootstrap", "posterior");
+    for (const auto& [name, coverage] :
+         {std::pair{"constant stimuli", covered.constant}, {"QUEST+", covered.quest}, {"staircase", covered.stairs}})
+        fmt::print("{:<18} {:>9.1f} % {:>9.1f} %\n", name, coverage.bootstrap, coverage.posterior);
+    fmt::print("QUEST+ chose the next level within {:.2f} ms of processor time\n", 1e3 * covered.next_level);
     fmt::print("between two trials of 'stiffness': at most {:.1f} ms of processor time (wanted: {:.0f} ms)\n",
                1e3 * between, 1e3 * max_between_trials);
     return ok ? done : answer_is_no;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adaptive methods against simulated observers, whose thresholds are off the grids.
-#include "dsp/psychophysics/fit.hpp"
+#include "dsp/psychophysics/posterior.hpp"
 #include "dsp/psychophysics/quest_plus.hpp"
 #include "dsp/psychophysics/staircase.hpp"
 
@@ -9,6 +9,8 @@
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <type_traits>
+#include <vector>
 
 using namespace tactus;
 using namespace tactus::psychophysics;
@@ -73,7 +75,7 @@ TEST_CASE("a staircase moves as its rule says and keeps its limits") {
     CHECK(stairs.level() == Approx(-0.25));  // the limit
     stairs.answer(false);
     CHECK(stairs.reversals().size() == 1);
-    CHECK(stairs.level() == Approx(-0.15));  // steps are small from the first reversal on
+    CHECK(stairs.level() == Approx(-0.15));  // the first reversal halves the steps
     stairs.answer(true);
     stairs.answer(false);  // two in a row are needed: this is one more rise
     CHECK(stairs.reversals().size() == 1);
@@ -83,7 +85,6 @@ TEST_CASE("a staircase moves as its rule says and keeps its limits") {
         stairs.answer(false);
     }
     CHECK(stairs.is_done());
-    CHECK(stairs.estimate());
 }
 
 TEST_CASE("a staircase refuses rules that cannot work") {
@@ -145,47 +146,88 @@ TEST_CASE("QUEST+ survives answers that contradict each other and levels off its
     CHECK_THROWS_AS(QuestPlus(bad), Error);
 }
 
-TEST_CASE("staircases and QUEST+ find random thresholds off the grid without bias", "[slow]") {
-    constexpr int subjects = 400;
-    double quest_error = 0.0, stairs_error = 0.0, reversal_error = 0.0;
-    FitSettings settings;
-    settings.lapse = 0.02;
+TEST_CASE("each reversal halves the first steps of a staircase down to the final one") {
+    StaircaseRule rule;
+    rule.step_up = rule.step_down = 0.01;
+    rule.first_factor = 4.0;
+    rule.down = 1;
+    Staircase stairs(rule);
+    double before = stairs.level(), direction = -1.0;
+    bool right = true;
+    for (const double step : {0.04, 0.02, 0.01, 0.01}) {
+        stairs.answer(right);
+        CHECK(stairs.level() - before == Approx(direction * step));
+        before = stairs.level();
+        right = !right;
+        direction = -direction;
+    }
+}
+
+TEST_CASE("staircases and QUEST+ find random thresholds off the grid without bias, and their intervals cover them",
+          "[slow]") {
+    constexpr int subjects = 300;
+    double quest_error = 0.0, stairs_error = 0.0, stairs_square = 0.0;
+    int quest_covers = 0, stairs_covers = 0;
+    const PosteriorSettings settings{Form::weibull, 0.5, 0.02, quest_settings().slopes, -1.5, 1.5};
     for (int subject = 0; subject < subjects; ++subject) {
         const Random where{static_cast<std::uint64_t>(500 + subject)};
         const double threshold = -0.5 + where.uniform(0);
         Observer observer{{Form::weibull, threshold, 3.0, 0.5, 0.02}, Random{static_cast<std::uint64_t>(subject)}};
-        StaircaseRule rule = two_down();
+        const StaircaseRule rule = two_down();
         const double wanted = observer.function.level_of(rule.target());
-        std::vector<double> levels;
-        std::vector<bool> correct;
-        const auto estimate = [&] {
-            const double level =
-                fit_psychometric(count_levels(levels, correct), settings).function.level_of(rule.target());
-            levels.clear();
-            correct.clear();
-            return level;
+        const auto error_of = [&](auto& method, int& covers) {
+            std::vector<double> levels;
+            std::vector<bool> correct;
+            for (int trial = 0; trial < rule.max_trials; ++trial) {
+                levels.push_back(method.level());
+                correct.push_back(observer.answers(levels.back()));
+                if constexpr (std::is_same_v<decltype(method), Staircase&>) method.answer(correct.back());
+                else method.answer(levels.back(), correct.back());
+            }
+            const PosteriorLevel level = posterior_level(count_levels(levels, correct), settings, rule.target());
+            covers += level.interval.low <= wanted && wanted <= level.interval.high ? 1 : 0;
+            return level.median - wanted;
         };
         QuestPlus quest(quest_settings());
-        for (int trial = 0; trial < 100; ++trial) {
-            levels.push_back(quest.level());
-            correct.push_back(observer.answers(levels.back()));
-            quest.answer(levels.back(), correct.back());
-        }
-        quest_error += estimate() - wanted;
-        rule.max_trials = 150;
+        quest_error += error_of(quest, quest_covers);
         Staircase stairs(rule);
-        while (!stairs.is_done()) {
-            levels.push_back(stairs.level());
-            correct.push_back(observer.answers(levels.back()));
-            stairs.answer(correct.back());
-        }
-        reversal_error += *stairs.estimate() - wanted;
-        stairs_error += estimate() - wanted;
+        const double error = error_of(stairs, stairs_covers);
+        stairs_error += error;
+        stairs_square += error * error;
     }
-    // 2 % of the threshold is 0.0086 in log10.
-    INFO(reversal_error / subjects);
+    // After 60 trials: 2 % of the threshold is 0.0086 in log10.
     CHECK(std::abs(quest_error / subjects) < 0.0086);
     CHECK(std::abs(stairs_error / subjects) < 0.0086);
-    // The mean of the reversals lies above the asymptote by less than half a step.
-    CHECK(std::abs(reversal_error / subjects) < 0.025);
+    // A fit with a free slope has about 0.11, one with the true slope 0.066 and twice the bias.
+    CHECK(std::sqrt(stairs_square / subjects) < 0.08);
+    CHECK(quest_covers >= 0.93 * subjects);
+    CHECK(stairs_covers >= 0.93 * subjects);
+}
+
+TEST_CASE("the posterior of a level is that of brute force, and refuses what has none") {
+    const std::vector<LevelCount> counts{{-0.2, 10, 6}, {0.0, 12, 9}, {0.3, 8, 8}};
+    PosteriorSettings settings{Form::logistic, 0.5, 0.01, {5.0, 12.0}, -1.0, 1.0};
+    const PosteriorLevel found = posterior_level(counts, settings, 0.75);
+    double below = 0.0, low = 0.0, high = 0.0, total = 0.0;
+    for (int i = 0; i < 20'000; ++i)
+        for (const double slope : settings.slopes) {
+            const double level = -1.0 + 1e-4 * (i + 0.5);
+            Psychometric function{Form::logistic, 0.0, slope, 0.5, 0.01};
+            function.threshold = level - function.level_of(0.75);
+            double likelihood = 1.0;
+            for (const LevelCount& count : counts)
+                likelihood *= std::pow(function.at(count.level), count.correct) *
+                              std::pow(1.0 - function.at(count.level), count.trials - count.correct);
+            total += likelihood;
+            below += level < found.median ? likelihood : 0.0;
+            low += level < found.interval.low ? likelihood : 0.0;
+            high += level < found.interval.high ? likelihood : 0.0;
+        }
+    CHECK(below / total == Approx(0.5).margin(1e-3));
+    CHECK(low / total == Approx(0.025).margin(1e-3));
+    CHECK(high / total == Approx(0.975).margin(1e-3));
+    CHECK_THROWS_AS(posterior_level({}, settings, 0.75), Error);
+    CHECK_THROWS_AS(posterior_level(counts, settings, 0.4), Error);
+    settings.slopes.clear();
+    CHECK_THROWS_AS(posterior_level(counts, settings, 0.75), Error);
 }
