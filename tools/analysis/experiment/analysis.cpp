@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/psychophysics/detection.hpp"
+#include "dsp/psychophysics/posterior.hpp"
 #include "dsp/statistics/distributions.hpp"
 #include "tools/analysis/experiment/experiment_folder.hpp"
 #include "tools/analysis/experiment/port_values.hpp"
@@ -28,13 +29,6 @@ bool is_data(const TrialRecord& trial) { return trial.phase == Phase::main || tr
 
 std::string key_of(const std::string& task, const std::string& measure, const std::string& condition) {
     return task + " " + measure + " " + condition;
-}
-
-/// Level with the target probability, in levels.
-std::optional<double> threshold_of(const Protocol& protocol, const psychophysics::PsychometricFit& fit) {
-    if (!fit.is_identified) return std::nullopt;
-    const double axis = fit.function.level_of(protocol.method.target);
-    return std::isfinite(axis) ? std::optional(protocol.stimulus->level_at(axis)) : std::nullopt;
 }
 
 struct Answers {
@@ -73,33 +67,102 @@ psychophysics::FitSettings fit_settings(const Protocol& protocol, const Answers&
     return settings;
 }
 
-/// Matches of a condition, on the axis of the stimulus.
-std::optional<psychophysics::AdjustedLevel> adjusted_in(const Protocol& protocol,
-                                                        const std::vector<TrialRecord>& records,
-                                                        const std::string& condition, bool with_marked) {
+/// A level on the axis of the stimulus, or why there is none.
+struct Estimate {
+    std::optional<double> axis;
+    std::optional<psychophysics::Interval> interval;
+    std::optional<psychophysics::AdjustedLevel> adjusted;
+    std::string problem;
+};
+
+/// Whether the device or the range ends here: what the subject would have chosen may lie beyond.
+bool is_end_of_range(const experiment::Stimulus& stimulus, double level) {
+    const double low = stimulus.axis(stimulus.presentable(stimulus.min)),
+                 high = stimulus.axis(stimulus.presentable(stimulus.max)), axis = stimulus.axis(level),
+                 near = 1e-9 * (high - low);
+    return axis <= low + near || axis >= high - near;
+}
+
+Estimate adjusted_in(const Protocol& protocol, const std::vector<TrialRecord>& records, const std::string& condition,
+                     bool with_marked) {
+    Estimate result;
     std::vector<double> matches;
     std::vector<bool> began_above;
+    std::size_t censored = 0;
     for (const TrialRecord& trial : records) {
         if (!is_data(trial) || trial.condition != condition || !trial.match) continue;
         if (!with_marked && !trial.marked.empty()) continue;
         matches.push_back(protocol.stimulus->axis(*trial.match));
+        censored += is_end_of_range(*protocol.stimulus, *trial.match) ? 1 : 0;
         began_above.push_back(protocol.begins_above(trial.level));
     }
-    return psychophysics::adjusted_level(matches, began_above);
+    result.adjusted = psychophysics::adjusted_level(matches, began_above);
+    if (!result.adjusted)
+        result.problem = fmt::format("{} matches: too few from below or from above", matches.size());
+    else if (censored > 0)
+        result.problem = fmt::format("{} of {} matches are at an end of the range: what matches may lie beyond it",
+                                     censored, matches.size());
+    if (!result.problem.empty()) return result;
+    result.axis = result.adjusted->match;
+    result.interval = result.adjusted->interval;
+    return result;
+}
+
+/// `samples` of the bootstrap, 0: none.
+Estimate estimate_of(const Protocol& protocol, const std::vector<psychophysics::LevelCount>& counts,
+                     const psychophysics::FitSettings& settings, const psychophysics::PsychometricFit& fit, int samples,
+                     std::uint64_t seed) {
+    const experiment::Stimulus& stimulus = *protocol.stimulus;
+    const double low = stimulus.axis(stimulus.min), high = stimulus.axis(stimulus.max),
+                 target = protocol.method.target;
+    Estimate result;
+    double axis = fit.function.level_of(target);
+    if (!fit.is_identified || !std::isfinite(axis)) {
+        result.problem = "the answers do not exclude that it lies beyond all levels";
+        return result;
+    }
+    const bool is_adaptive = protocol.method.kind != experiment::Method::Kind::constant;
+    if (is_adaptive) {
+        // The prior reaches beyond the range, so that its ends do not attract the estimate.
+        const double beyond = 0.5 * (high - low);
+        const auto level =
+            psychophysics::posterior_level(counts,
+                                           {settings.form, settings.guess, protocol.method.lapse,
+                                            protocol.method.slopes, low - beyond, high + beyond},
+                                           target);
+        axis = level.median;
+        result.interval = level.interval;
+    }
+    if (!(axis > low && axis < high)) {
+        result.interval.reset();
+        result.problem = "the answers place it at or beyond an end of the range";
+        return result;
+    }
+    result.axis = axis;
+    if (!is_adaptive && samples > 0) try {
+            result.interval =
+                psychophysics::bootstrap_fit(counts, settings, fit, target, samples, 0.95, seed).threshold;
+        } catch (const Error&) {
+            result.interval.reset();  // too few answers: the threshold has no interval
+        }
+    return result;
+}
+
+void set_estimate(const Protocol& protocol, const Estimate& estimate, SubjectThreshold& threshold) {
+    const auto level = [&](double axis) { return protocol.stimulus->level_at(axis); };
+    threshold.problem = estimate.problem;
+    threshold.adjusted = estimate.adjusted;
+    if (estimate.axis) threshold.threshold = level(*estimate.axis);
+    if (estimate.interval) threshold.interval = {level(estimate.interval->low), level(estimate.interval->high)};
 }
 
 SubjectThreshold analyse_adjustment(const Protocol& protocol, const AnalysedSubject& subject,
                                     const std::string& condition) {
     SubjectThreshold result;
     result.condition = condition;
-    result.adjusted = adjusted_in(protocol, subject.records, condition, false);
-    const auto level = [&](double axis) { return protocol.stimulus->level_at(axis); };
-    if (result.adjusted) {
-        result.threshold = level(result.adjusted->match);
-        result.interval = {level(result.adjusted->interval.low), level(result.adjusted->interval.high)};
-    }
-    if (const auto all = adjusted_in(protocol, subject.records, condition, true))
-        result.with_marked = level(all->match);
+    set_estimate(protocol, adjusted_in(protocol, subject.records, condition, false), result);
+    if (const Estimate all = adjusted_in(protocol, subject.records, condition, true); all.axis)
+        result.with_marked = protocol.stimulus->level_at(*all.axis);
     return result;
 }
 
@@ -123,21 +186,16 @@ SubjectThreshold analyse_condition(const Protocol& protocol, const AnalysedSubje
     const psychophysics::FitSettings settings = fit_settings(protocol, answers);
     if (result.counts.size() >= 2) {
         result.fit = psychophysics::fit_psychometric(result.counts, settings);
-        result.threshold = threshold_of(protocol, *result.fit);
-        if (result.threshold && how.bootstrap > 0) {
-            try {
-                const auto axis = psychophysics::bootstrap_fit(result.counts, settings, *result.fit,
-                                                               protocol.method.target, how.bootstrap, 0.95, seed)
-                                      .threshold;
-                result.interval = {protocol.stimulus->level_at(axis.low), protocol.stimulus->level_at(axis.high)};
-            } catch (const Error&) {
-                result.interval.reset();  // too few answers: the threshold stands without an interval
-            }
-        }
+        set_estimate(protocol, estimate_of(protocol, result.counts, settings, *result.fit, how.bootstrap, seed),
+                     result);
         const Answers all = answers_of(protocol, subject.records, condition, true);
         const auto counts = psychophysics::count_levels(all.levels, all.correct);
-        result.with_marked =
-            threshold_of(protocol, psychophysics::fit_psychometric(counts, fit_settings(protocol, all)));
+        const psychophysics::FitSettings with_all = fit_settings(protocol, all);
+        const auto fit = psychophysics::fit_psychometric(counts, with_all);
+        if (const Estimate estimate = estimate_of(protocol, counts, with_all, fit, 0, seed); estimate.axis)
+            result.with_marked = protocol.stimulus->level_at(*estimate.axis);
+    } else {
+        result.problem = "there are answers at fewer than two levels";
     }
     if (protocol.response.kind == ResponseKind::yes_no && answers.signals > 0.0 && answers.noises > 0.0) {
         const auto detection =

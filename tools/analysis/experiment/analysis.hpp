@@ -27,8 +27,10 @@ struct SubjectThreshold {
     std::vector<psychophysics::LevelCount> counts;  ///< levels on the axis of the stimulus
     std::optional<psychophysics::PsychometricFit> fit;
     std::optional<double> threshold;  ///< level with the target probability; none: not identified
+    std::string problem;  ///< why it is not identified
     std::optional<double> with_marked;  ///< the same with the marked trials
-    std::optional<psychophysics::Interval> interval;  ///< 95 %, parametric bootstrap; ignores that levels were adaptive
+    /// 95 %: constant stimuli by a parametric bootstrap, adaptive methods by the posterior.
+    std::optional<psychophysics::Interval> interval;
     std::optional<double> d_prime, criterion;  ///< of yes/no tasks
     std::optional<psychophysics::AdjustedLevel> adjusted;  ///< of adjustments: `threshold` is its match
     double max_level_error = 0.0;  ///< largest deviation of the rendered level from the wanted one, a fraction
@@ -89,7 +91,7 @@ struct ExperimentAnalysis {
 };
 
 struct AnalysisSettings {
-    int bootstrap = 499;  ///< samples for the intervals of thresholds; 0: none
+    int bootstrap = 499;  ///< samples for the intervals of constant stimuli; 0: none
     bool has_carry_over = false;  ///< also adjust each comparison for carry-over
 };
 

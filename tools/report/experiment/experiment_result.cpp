@@ -176,6 +176,9 @@ std::vector<std::string> notes_of(const ExperimentAnalysis& analysis) {
         std::string text = fmt::format(
             "{}: with {} subjects the t test finds {:.2f} standard deviations of the difference ({}) with 80 % power",
             one.label, one.differences.size(), one.detectable, with_unit(c.text(found), one.is_log ? "" : c.unit));
+        if (one.differences.size() < analysis.included)
+            text += fmt::format("; {} of {} subjects have no value in one of the conditions",
+                                analysis.included - one.differences.size(), analysis.included);
         if (one.of.margin)
             text += fmt::format(
                 "; equivalence within {:.2g} standard deviations is shown in {:.0f} % of studies without an effect",
@@ -240,7 +243,7 @@ const Fields<Group>& group_fields() {
 }
 
 /// A subject in one condition.
-struct Threshold {
+struct LevelOfSubject {
     std::string subject;
     const SubjectThreshold* of;
     const Protocol* protocol;
@@ -260,15 +263,15 @@ struct Threshold {
     }
 };
 
-std::optional<double> low_of(const Threshold& t) {
+std::optional<double> low_of(const LevelOfSubject& t) {
     return t.of->interval ? t.shown(t.of->interval->low) : std::nullopt;
 }
-std::optional<double> high_of(const Threshold& t) {
+std::optional<double> high_of(const LevelOfSubject& t) {
     return t.of->interval ? t.shown(t.of->interval->high) : std::nullopt;
 }
 
-const Fields<Threshold>& threshold_fields() {
-    using T = Threshold;
+const Fields<LevelOfSubject>& subject_level_fields() {
+    using T = LevelOfSubject;
     using psychophysics::AdjustedLevel;
     static const Fields<T> all =
         Fields<T>("threshold, or match by adjustment, of a subject in one condition")
@@ -296,7 +299,8 @@ const Fields<Threshold>& threshold_fields() {
             .number("from_above", "from above", significant(4),
                     [](const T& t) { return t.match(&AdjustedLevel::above); })
             .number("match_deviation", "deviation", significant(3), [](const T& t) { return t.deviation(); })
-            .number("max_level_error", "", significant(3), [](const T& t) { return t.of->max_level_error; });
+            .number("max_level_error", "", significant(3), [](const T& t) { return t.of->max_level_error; })
+            .text("problem", "why", [](const T& t) { return t.of->problem; });
     return all;
 }
 
@@ -453,6 +457,11 @@ std::vector<std::string> warnings_of(const FoundExperiment& f) {
     for (const AnalysedSubject& subject : f.analysis->subjects)
         if (!subject.excluded.empty())
             all.push_back(fmt::format("{} is left out: {}", subject.entry.pseudonym, subject.excluded));
+    for (const AnalysedSubject& subject : f.analysis->subjects)
+        for (const SubjectThreshold& one : subject.thresholds)
+            if (subject.excluded.empty() && !one.problem.empty())
+                all.push_back(fmt::format("{} in '{}': not identified: {}", subject.entry.pseudonym, one.condition,
+                                          one.problem));
     return all;
 }
 
@@ -471,10 +480,29 @@ std::vector<std::string> meanings_of(const FoundExperiment& f) {
             "Level: mean of the matches from below and from above. Deviation: of a match about the mean of its "
             "direction, on the axis of the stimulus.");
     else if (protocol.is_psychophysics())
-        all.push_back(
-            fmt::format("Level with a probability of {:.3g}. Intervals: parametric bootstrap; for adaptive methods it "
-                        "ignores that the levels depended on the answers.",
-                        protocol.method.target));
+        all.push_back(fmt::format(
+            "Level with a probability of {:.3g}. {}", protocol.method.target,
+            protocol.method.kind == experiment::Method::Kind::constant
+                ? "Maximum of the likelihood; intervals: parametric bootstrap."
+                : "Median of the posterior, intervals: its quantiles. The prior is uniform over the axis and over the "
+                  "slopes of the protocol; the posterior does not depend on the rule that chose the levels."));
+    if (f.mixed || std::ranges::any_of(f.analysis->comparisons,
+                                       [](const AnalysedComparison& one) { return one.carry_over.has_value(); })) {
+        all.insert(all.end(),
+                   {"The paired test estimates the mean difference of the subjects that have a value in each of its "
+                    "conditions; its error is the spread of this one difference. The adjustment for the period "
+                    "averages both orders with equal weights.",
+                    "The carry-over model is least squares on the same means of all conditions: subject + period + "
+                    "condition + carry-over. Its error is one residual, pooled over all conditions and effects, with "
+                    "more degrees of freedom; the spread of the effect between subjects is part of that residual.",
+                    "The mixed model uses each trial of the conditions of its comparison, also of subjects who lack "
+                    "others, and has the spread of the effect between subjects as a term of its own. Its carry-over "
+                    "term has a value for each level of the factor in the period before, and for none before the first.",
+                    "The three agree for complete, balanced data without carry-over. They differ where subjects lack "
+                    "values, orders are not balanced, numbers of trials differ, or the spread of this difference is "
+                    "not that of the others. Where they lead to different verdicts, the paired test is the one that "
+                    "the protocol states beforehand."});
+    }
     return all;
 }
 
@@ -541,9 +569,9 @@ const Fields<FoundExperiment>& experiment_fields() {
             .figure(
                 "Matches of each subject", [](const F& f) { return f.analysis->protocol.is_adjustment(); },
                 [](const F& f) { return draw_matches(*f.analysis); })
-            .rows("thresholds", "thresholds", threshold_fields(),
+            .rows("thresholds", "thresholds", subject_level_fields(),
                   [](const F& f) {
-                      std::vector<Threshold> thresholds;
+                      std::vector<LevelOfSubject> thresholds;
                       const Protocol& protocol = f.analysis->protocol;
                       for (const AnalysedSubject& subject : f.analysis->subjects)
                           for (const SubjectThreshold& one : subject.thresholds)

@@ -410,3 +410,106 @@ TEST_CASE("tables are as BIDS demands: a description of each column, n/a for wha
     CHECK(distance > 1.0);
     CHECK(distance < 8.0);
 }
+
+namespace {
+
+/// The analysis of two complete subjects of a library experiment, whose trials `make` fills.
+template <class Make>
+ExperimentAnalysis analysis_of_trials(const fs::path& out, const char* experiment, Make make) {
+    const experiment::Protocol protocol = experiment::load_protocol(
+        test::source_folder() / "assets/library/experiments" / fmt::format("{}.toml", experiment));
+    ExperimentFolder folder(out, protocol);
+    for (const char* name : {"P01", "P02"}) {
+        experiment::SubjectEntry entry = folder.enrol(name, true);
+        entry.is_complete = true;
+        folder.update(entry);
+        std::vector<TrialRecord> trials;
+        for (const experiment::Condition& condition : protocol.conditions) {
+            TrialRecord trial;
+            trial.condition = condition.name;
+            trial.interval = 1;
+            trial.is_simulated = true;
+            for (int i = 0; i < 40; ++i) {
+                trial.number = static_cast<int>(trials.size()) + 1;
+                trial.folder = fmt::format("trial-{:04}", trial.number);
+                if (make(protocol, i, trial)) trials.push_back(trial);
+            }
+        }
+        fs::create_directories(folder.subject_folder(name));
+        experiment::save_trials(trials, folder.subject_folder(name) / "trials.jsonl");
+    }
+    return analyse_experiment(out, {.bootstrap = 49});
+}
+
+}  // namespace
+
+TEST_CASE("matches and thresholds at an end of the range are not identified, with the reason, and give no effect") {
+    const run::ScratchFolder scratch;
+    const auto matches = [](double at_320) {
+        return [at_320](const experiment::Protocol& protocol, int i, TrialRecord& trial) {
+            trial.level = i % 2 == 0 ? protocol.stimulus->min * 1.2 : protocol.stimulus->max * 0.9;
+            trial.match = (trial.condition == "f320" && i == 3 ? at_320 : 0.05) * (1.0 + 1e-3 * (i % 3));
+            if (*trial.match > protocol.stimulus->max) trial.match = protocol.stimulus->max;
+            return i < 8;
+        };
+    };
+    const ExperimentAnalysis inside = analysis_of_trials(scratch.path() / "inside", "intensity", matches(0.7));
+    for (const SubjectThreshold& one : inside.subjects.front().thresholds) CHECK(one.threshold);
+    // One match of eight at the upper, or at the lower, end: it may have been any level beyond.
+    for (const double end : {0.8, 0.005}) {
+        const ExperimentAnalysis stuck =
+            analysis_of_trials(scratch.path() / fmt::format("stuck{}", end), "intensity", matches(end));
+        for (const SubjectThreshold& one : stuck.subjects.front().thresholds) {
+            CHECK(one.threshold.has_value() == (one.condition != "f320"));
+            CHECK(one.adjusted);
+            if (one.condition == "f320")
+                CHECK(one.problem == "1 of 8 matches are at an end of the range: what matches may lie beyond it");
+        }
+        for (const AnalysedComparison& one : stuck.comparisons) CHECK(verdict_of(one, 0.05) == "not tested");
+        const std::string text = report::text_of(report::experiment_fields().of(report::FoundExperiment{&stuck, {}}));
+        CHECK(text.find("P01 in 'f320': not identified: 1 of 8 matches") != std::string::npos);
+    }
+    // A staircase and QUEST+ that stay at the greatest level.
+    for (const char* name : {"vibration", "stiffness"}) {
+        const ExperimentAnalysis beyond = analysis_of_trials(
+            scratch.path() / name, name, [](const experiment::Protocol& protocol, int i, TrialRecord& trial) {
+                trial.level = protocol.stimulus->max * (i % 4 == 0 ? 0.8 : 1.0);
+                trial.is_correct = i % 5 < 3;  // 60 %: below the target, above chance
+                return true;
+            });
+        for (const SubjectThreshold& one : beyond.subjects.front().thresholds) {
+            CAPTURE(one.condition, one.problem);
+            CHECK_FALSE(one.threshold);
+            CHECK_FALSE(one.interval);
+            CHECK_FALSE(one.problem.empty());
+        }
+    }
+}
+
+TEST_CASE("a threshold beyond the range of its stimulus is not reported as one, by any method") {
+    const run::ScratchFolder scratch;
+    // 70 % correct at the greatest level and chance at a third of it: the level with 75 or 79 % lies above.
+    for (const char* name : {"vibration", "stiffness"}) {
+        const ExperimentAnalysis beyond = analysis_of_trials(
+            scratch.path() / name, name, [](const experiment::Protocol& protocol, int i, TrialRecord& trial) {
+                trial.level = protocol.stimulus->max * (i % 2 == 0 ? 1.0 : 0.3);
+                trial.is_correct = i % 2 == 0 ? i % 20 < 14 : i % 4 == 1;
+                return true;
+            });
+        const SubjectThreshold& one = beyond.subjects.front().thresholds.front();
+        CAPTURE(name, one.problem);
+        CHECK_FALSE(one.threshold);
+    }
+}
+
+TEST_CASE("a report with carry-over or mixed models explains what each estimates and why they differ") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    write_study(data, 8, {});
+    for (const bool has_all : {false, true}) {
+        const ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0, .has_carry_over = has_all});
+        const std::string page = report::html_of(report::experiment_fields().of(report::FoundExperiment{&analysis, {}}));
+        CHECK((page.find("The carry-over model is least squares") != std::string::npos) == has_all);
+        CHECK((page.find("They differ where subjects lack values") != std::string::npos) == has_all);
+    }
+}
