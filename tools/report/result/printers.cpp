@@ -4,7 +4,6 @@
 #include "assets/table/csv_field.hpp"
 #include "dsp/core/overload.hpp"
 #include "tools/report/figures/html_report.hpp"
-#include "tools/report/result/fields.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -368,21 +367,6 @@ std::string csv_table(const std::vector<std::string>& columns, const std::vector
             if (c + 1 == columns.size()) out += '\n';
         }
     return out;
-}
-
-Number in_unit(Number read, const NumberFormat& format) {
-    if (read.value) *read.value *= format.per_si;
-    if (read.uncertainty) *read.uncertainty *= format.per_si;
-    return read;
-}
-
-Json schema_of_number() { return {{"type", Json::array({"number", "null"})}}; }
-Json schema_of_list(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
-Json schema_of_texts() { return schema_of_list({{"type", "string"}}); }
-Json schema_or_null(Json schema) {
-    if (!schema.contains("type")) return {{"anyOf", Json::array({std::move(schema), {{"type", "null"}}})}};
-    schema["type"] = Json::array({schema["type"], "null"});
-    return schema;
 }
 
 Json schema_of_output(std::vector<Json> kinds) {
