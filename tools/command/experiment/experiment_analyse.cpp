@@ -22,27 +22,31 @@ namespace {
 struct AnalyseChoice {
     std::filesystem::path folder;
     analysis::AnalysisSettings settings;
-    bool json = false, checks_takes = false, has_mixed_models = false;
+    bool checks_takes = false, has_mixed_models = false;
+    ResultChoice printed;
 };
 
 int analyse(const AnalyseChoice& choice) {
+    check_result_files(choice.printed, {choice.folder / "experiment.json"});
     const analysis::ExperimentAnalysis analysis = analysis::analyse_experiment(choice.folder, choice.settings);
     analysis::write_bids(analysis, choice.folder);
     report::FoundExperiment found{&analysis, {}};
     if (choice.has_mixed_models)
         found.mixed =
             analysis::fit_mixed_models(analysis, choice.folder, choice.settings.has_carry_over, run::stop_on_signals());
-    ResultChoice printed;
-    printed.out = {choice.folder / "results.json", choice.folder / "report.html"};
-    printed.json = choice.json;
-    write_result(report::experiment_fields().of(found), printed);
+    const report::Result result = report::experiment_fields().of(found);
+    ResultChoice kept;
+    kept.out = {choice.folder / "results.json", choice.folder / "report.html"};
+    write_files(result, kept);
+    write_result(result, choice.printed);
+    const bool says_more = !choice.printed.json && !choice.printed.quiet;
     if (!choice.checks_takes) {
-        if (!choice.json) say(stdout, fmt::format("report: {}\n", (choice.folder / "report.html").string()));
+        if (says_more) say(stdout, fmt::format("report: {}\n", (choice.folder / "report.html").string()));
         return done;
     }
     const analysis::TakeCheck check = analysis::check_takes(choice.folder);
     for (const std::string& difference : check.differences) say(stderr, fmt::format("tactus: {}\n", difference));
-    if (!choice.json)
+    if (says_more)
         say(stdout, fmt::format("takes: {} of {} computed again, {}\n", counted(check.values, "value"),
                                 counted(check.trials, "trial"),
                                 check.differences.empty() ? std::string("all equal to the bit")
@@ -53,7 +57,7 @@ int analyse(const AnalyseChoice& choice) {
 Action declare_experiment_analyse(VerbOptions& verb) {
     const auto choice = std::make_shared<AnalyseChoice>();
     verb.add("folder", choice->folder, "folder of the experiment's data").required();
-    verb.add("--bootstrap", choice->settings.bootstrap, "samples for the intervals of thresholds; 0: none")
+    verb.add("--bootstrap", choice->settings.bootstrap, "samples for the intervals of thresholds by constant stimuli; 0: none")
         .range(0, 100'000)
         .shows_default();
     verb.flag("--carry-over", choice->settings.has_carry_over,
@@ -61,7 +65,7 @@ Action declare_experiment_analyse(VerbOptions& verb) {
     verb.flag("--mixed-models", choice->has_mixed_models,
               "also write data and script of mixed models for R, and run them if R with lmerTest is installed");
     verb.flag("--takes", choice->checks_takes, "compute all measures again from the takes, and compare to the bit");
-    verb.flag("--json", choice->json, "as JSON");
+    add_result_options(verb, choice->printed, ResultFigure::some);
     return [choice] { return analyse(*choice); };
 }
 
