@@ -183,32 +183,59 @@ TEST_CASE("seven subjects with three factors, catch trials and a table of orders
     CHECK(slurp(folder.path / "data/experiment.json").find("\"freed_rows\": []") != std::string::npos);
 }
 
-TEST_CASE("a session that is killed again and again ends as one that was not", "[long]") {
+TEST_CASE("a session that is killed within trials ends as one that was not", "[slow]") {
     const Folder folder;
     write_own(folder);
+    // Two of its conditions and one of its comparisons: each start renders the ends of the range of each condition.
+    std::string text = own_experiment;
+    text.erase(text.find("[[condition]]\nname = \"slowHigh\""),
+               text.find("[trial]") - text.find("[[condition]]\nname = \"slowHigh\""));
+    text.erase(text.rfind("[[comparison]]"));
+    folder.write("own.toml", text);
+    folder.write("orders.csv", "slowLow, fastLow\n");
     const std::string out = at(folder, "data"), whole = at(folder, "whole");
     REQUIRE(folder.tactus(run_own(folder, "--subject P01 --out " + whole)).code == 0);
-    // Killed at the beginning, and then each time that it has kept another trial and is a little further in the next one.
-    const fs::path kept = folder.path / "data/sub-P01/trials.jsonl";
-    int before = -1;
-    for (const char* later : {"0.1", "0", "0.02", "0.05", "0.1"}) {
-        const std::string killed = fmt::format(
-            "{} {} > /dev/null 2>&1 & while kill -0 $! && [ \"$(cat {} | wc -l)\" -le {} ]; do sleep 0.005; done; "
-            "sleep {}; "
-            "kill -KILL $!; wait $!; [ $? = 137 ]",
-            tactus::test::command(), run_own(folder, "--subject P01 --out " + out), kept.string(), before, later);
-        folder.write("kill.sh", killed);
-        CHECK(std::system(fmt::format("sh {} 2> /dev/null", at(folder, "kill.sh")).c_str()) == 0);
-        const int now = static_cast<int>(lines_of(slurp(kept)).size());
-        CHECK(now >= std::max(before, 0));
-        before = now;
+    const fs::path subject = folder.path / "data/sub-P01", kept = subject / "trials.jsonl";
+    // A trial has a folder as soon as it begins, and a line when it came to its end.
+    const auto kept_trials = [&] { return fs::exists(kept) ? lines_of(slurp(kept)).size() : 0U; };
+    const auto trial_folder = [&](std::size_t number) { return subject / fmt::format("trial-{:04}", number); };
+    // Killed when the folder of a trial exists. A machine that is busy may let the trial end first: then in a later one.
+    int inside = 0;
+    for (std::size_t number = 1; inside < 2 && number <= 7; number = kept_trials() + 2) {
+        folder.write("kill.sh", fmt::format("{} {} > /dev/null 2>&1 & until [ -d {} ]; do kill -0 $! || exit 1; done; "
+                                            "kill -KILL $!; wait $!; [ $? = 137 ]",
+                                            tactus::test::command(), run_own(folder, "--subject P01 --out " + out),
+                                            trial_folder(number).string()));
+        if (std::system(fmt::format("sh {} 2> /dev/null", at(folder, "kill.sh")).c_str()) != 0) break;
+        inside += fs::exists(trial_folder(number)) && kept_trials() == number - 1 ? 1 : 0;
     }
+    REQUIRE(inside == 2);
     REQUIRE(folder.tactus(run_own(folder, "--subject P01 --out " + out)).code == 0);
-    CHECK(slurp(folder.path / "data/sub-P01/trials.jsonl") == slurp(folder.path / "whole/sub-P01/trials.jsonl"));
+    CHECK(slurp(kept) == slurp(folder.path / "whole/sub-P01/trials.jsonl"));
     const Outcome o = folder.tactus("experiment analyse " + out + " --takes --bootstrap 0");
     CAPTURE(o.out, o.err);
     CHECK(o.code == 0);
     CHECK(o.out.find("all equal to the bit") != std::string::npos);
+}
+
+TEST_CASE("an analysis is also written as the endings of -o ask, and refuses one that no format has") {
+    const Folder folder;
+    write_own(folder);
+    const std::string out = at(folder, "data");
+    REQUIRE(folder.tactus(run_own(folder, "--subject P01 --no-takes --out " + out)).code == 0);
+    const std::string analyse = fmt::format("experiment analyse {} --quiet --bootstrap 0 -o ", out);
+    const Outcome o = folder.tactus(fmt::format("{0}{1} -o {2} -o {3}", analyse, at(folder, "a.pdf"), at(folder, "a.txt"),
+                                                at(folder, "a.json")));
+    CAPTURE(o.err);
+    CHECK(o.code == 0);
+    CHECK(o.out.empty());
+    CHECK(slurp(folder.path / "a.pdf").starts_with("%PDF"));
+    CHECK(slurp(folder.path / "a.txt").starts_with("Own experiment"));
+    CHECK(slurp(folder.path / "a.json") == slurp(folder.path / "data/results.json"));
+    CHECK(fs::exists(folder.path / "data/report.html"));
+    CHECK(folder.tactus(analyse + at(folder, "a.docx")).code == 2);
+    // The data of the experiment are no place for a result.
+    CHECK(folder.tactus(analyse + out + "/experiment.json").code == 2);
 }
 
 TEST_CASE("a second subject in the same folder at the same time is refused", "[slow]") {
