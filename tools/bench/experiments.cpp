@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How often the tests of experiments err, what their intervals cover, and how many trials adaptive methods need.
 #include "assets/file/json.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/psychophysics/posterior.hpp"
 #include "dsp/psychophysics/quest_plus.hpp"
@@ -21,7 +22,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <string>
 #include <vector>
 
@@ -207,13 +207,6 @@ struct Covered {
     double next_level = 0.0;
 };
 
-/// Of this thread: other programs do not count.
-double processor_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// The most processor time between the end of a trial and the beginning of the next one, s: measures, answer, record, next level, and
 /// its patch compiled.
 double between_trials() {
@@ -236,9 +229,9 @@ double between_trials() {
     hooks.perform = [&](const run::RunChoice& run, const experiment::Condition&, std::atomic<bool>&,
                         analysis::TurnedLevel*) {
         (void)run::load_plan(run, assets);
-        if (ended >= 0.0) worst = std::max(worst, processor_seconds() - ended);
+        if (ended >= 0.0) worst = std::max(worst, thread_seconds() - ended);
         analysis::LiveEnd end{run::render_run(run, assets, never, [](double) {}).summary, {}, false};
-        ended = processor_seconds();
+        ended = thread_seconds();
         return end;
     };
     run_experiment(choice, hooks, stop);
@@ -276,9 +269,9 @@ Covered covered_thresholds(int observers) {
         psychophysics::QuestPlus quest(wide_prior());
         count_covers([&](int) { return quest.level(); },
                      [&](double level, bool right) {
-                         const double begin = processor_seconds();
+                         const double begin = thread_seconds();
                          quest.answer(level, right);
-                         covered.next_level = std::max(covered.next_level, processor_seconds() - begin);
+                         covered.next_level = std::max(covered.next_level, thread_seconds() - begin);
                      },
                      11, covered.quest);
         psychophysics::Staircase stairs(rule);

@@ -3,6 +3,7 @@
 
 #include "assets/library/flap_plan.hpp"
 #include "dsp/core/constants.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/coupling/held_contact.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "dsp/rope/attached_vessel.hpp"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <deque>
 
 namespace tactus::bench {
@@ -22,11 +22,7 @@ namespace {
 
 const Quat upright{1.0, 0.0, 0.0, 0.0};
 
-double thread_microseconds() {
-    timespec now{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
+double thread_microseconds() { return 1e6 * thread_seconds(); }
 
 struct Body {
     contact::Pointshell shell;
