@@ -127,7 +127,7 @@ public:
         y_ += h.depth > 1 ? 8.0 : 12.0;
         paragraph(h.text, h.depth > 1 ? 11.0 : 13.0, true, h.is_warning);
     }
-    void add(const Paragraph& p) { paragraph(p.text, 9.5, false, p.is_warning); }
+    void add(const Paragraph& p) { paragraph(p.text, 9.5, false, false); }
     void add(const ReportList& l) {
         for (const std::string& item : l.items) paragraph("\u2022 " + item, 9.5, false, l.is_warning);
     }
@@ -155,11 +155,6 @@ public:
         const double high = !is_tall ? max_drawing : left > 0.7 * page ? left : page;
         const double scale = std::min({points_per_pixel, inside / d.figure.width(), high / d.figure.height()});
         captioned(d.figure, scale, d.caption);
-    }
-    void add(const render::LabelledPicture& p) {
-        if (p.image.rgb.empty()) return;
-        const double scale = std::min(0.6, inside / p.image.width);
-        captioned(figure_of(p, min_size / scale), scale, p.caption);
     }
     void add(const PictureGrid& g) {
         constexpr double wide = 0.5 * (inside - gutter);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/blocks/report_block.hpp"
 
+#include "dsp/core/overload.hpp"
 #include "tools/report/blocks/picture_figure.hpp"
 #include "tools/report/figures/html_report.hpp"
 
@@ -11,13 +12,6 @@
 namespace tactus::report {
 
 namespace {
-
-template <class... Each>
-struct Visit : Each... {
-    using Each::operator()...;
-};
-template <class... Each>
-Visit(Each...) -> Visit<Each...>;
 
 constexpr const char* fail = " class=\"fail\"";
 
@@ -72,16 +66,13 @@ std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark) 
     const auto prefix = [&] { return fmt::format("{}{}-", mark, ++number); };
     for (const ReportBlock& block : blocks)
         out += std::visit(
-            Visit{[](const Heading& h) {
+            Overload{[](const Heading& h) {
                       return fmt::format("<h{0}{1}>{2}</h{0}>\n", std::clamp(h.depth, 1, 3) + 1,
                                          h.is_warning ? fail : "", html::escaped(h.text));
                   },
-                  [](const Paragraph& p) {
-                      return fmt::format("<p{}>{}</p>\n", p.is_warning ? fail : "", html::escaped(p.text));
-                  },
+                  [](const Paragraph& p) { return fmt::format("<p>{}</p>\n", html::escaped(p.text)); },
                   [](const ReportList& l) { return html_of(l); }, [](const ReportTable& t) { return html_of(t); },
                   [&](const Drawing& d) { return captioned(d.figure, d.caption, prefix()); },
-                  [&](const render::LabelledPicture& p) { return html_of(p, prefix()); },
                   [&](const PictureGrid& g) {
                       std::string two = "<div class=\"two\">\n";
                       for (const render::LabelledPicture& picture : g.pictures) two += html_of(picture, prefix());

@@ -20,7 +20,6 @@ struct Heading {
 
 struct Paragraph {
     std::string text;
-    bool is_warning = false;
 };
 
 struct ReportList {
@@ -46,8 +45,7 @@ struct PictureGrid {
     std::vector<render::LabelledPicture> pictures;
 };
 
-using ReportBlock =
-    std::variant<Heading, Paragraph, ReportList, ReportTable, Drawing, render::LabelledPicture, PictureGrid>;
+using ReportBlock = std::variant<Heading, Paragraph, ReportList, ReportTable, Drawing, PictureGrid>;
 
 /// HTML of the blocks, for html::page. Drawings get names that begin with `mark` (letters).
 std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark);
