@@ -30,28 +30,33 @@ std::string p_text(double p) { return p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f
 
 std::string with_unit(std::string text, const std::string& unit) { return unit.empty() ? text : text + " " + unit; }
 
-/// A comparison with what its numbers mean.
-struct Compared {
-    const AnalysedComparison* of;
-    const Protocol* protocol;
+/// Differences of a measure as they are shown.
+struct DifferenceUnit {
+    bool is_log = false;  ///< differences of logarithms have no unit
     std::string unit;
     double factor = 1.0;  ///< of the unit
 
-    bool is_tested() const { return of->test.has_value(); }
-    /// In the shown unit; differences of logarithms have none.
-    double shown(double difference) const { return of->is_log ? difference : difference / factor; }
+    double shown(double difference) const { return is_log ? difference : difference / factor; }
     std::string text(double difference) const {
-        return of->is_log ? fmt::format("×{:.3f}", std::exp(difference)) : fmt::format("{:.4g}", shown(difference));
+        return is_log ? fmt::format("×{:.3f}", std::exp(difference)) : fmt::format("{:.4g}", shown(difference));
     }
+    std::string with_name(const std::string& number) const { return with_unit(number, is_log ? "" : unit); }
     std::string text(double value, double low, double high) const {
-        return with_unit(fmt::format("{} ({} to {})", text(value), text(low), text(high)), of->is_log ? "" : unit);
+        return with_name(fmt::format("{} ({} to {})", text(value), text(low), text(high)));
     }
 };
 
+/// A comparison with the unit of its differences.
+struct Compared : DifferenceUnit {
+    const AnalysedComparison* of;
+    const Protocol* protocol;
+
+    bool is_tested() const { return of->test.has_value(); }
+};
+
 Compared compared(const AnalysedComparison& one, const Protocol& protocol) {
-    Compared result{&one, &protocol, analysis::unit_of(protocol, one.of.task, one.of.measure), 1.0};
-    result.factor = parse_unit(result.unit).factor;
-    return result;
+    const std::string unit = analysis::unit_of(protocol, one.of.task, one.of.measure);
+    return {{one.is_log, unit, parse_unit(unit).factor}, &one, &protocol};
 }
 
 /// A number of a comparison that was tested.
@@ -175,7 +180,7 @@ std::vector<std::string> notes_of(const ExperimentAnalysis& analysis) {
         const double found = one.detectable * one.test->of.deviation;
         std::string text = fmt::format(
             "{}: with {} subjects the t test finds {:.2f} standard deviations of the difference ({}) with 80 % power",
-            one.label, one.differences.size(), one.detectable, with_unit(c.text(found), one.is_log ? "" : c.unit));
+            one.label, one.differences.size(), one.detectable, c.with_name(c.text(found)));
         if (one.differences.size() < analysis.included)
             text += fmt::format("; {} of {} subjects have no value in one of the conditions",
                                 analysis.included - one.differences.size(), analysis.included);
@@ -348,17 +353,12 @@ const Fields<Subject>& subject_fields() {
     return all;
 }
 
-/// A fitted model with the comparison that it belongs to.
-struct Modelled {
+/// A fitted model with the unit of its comparison.
+struct Modelled : DifferenceUnit {
     const MixedModel* of;
-    double factor = 1.0;
-    std::string unit;
 
-    std::optional<double> shown(const std::optional<double>& difference) const {
-        return difference ? std::optional(of->is_log ? *difference : *difference / factor) : std::nullopt;
-    }
-    std::string text(double difference) const {
-        return of->is_log ? fmt::format("×{:.3f}", std::exp(difference)) : fmt::format("{:.4g}", difference / factor);
+    std::optional<double> shown_if(const std::optional<double>& difference) const {
+        return difference ? std::optional(shown(*difference)) : std::nullopt;
     }
 };
 
@@ -368,25 +368,23 @@ const Fields<Modelled>& model_fields() {
         Fields<M>("mixed model of a comparison, by R with lmerTest")
             .text("comparison", "comparison", [](const M& m) { return m.of->label; })
             .integer("values", "values", [](const M& m) { return m.of->values; })
-            .number("difference", "", significant(4), [](const M& m) { return m.shown(m.of->effect); })
-            .number("low", "", significant(4), [](const M& m) { return m.shown(m.of->low); })
-            .number("high", "", significant(4), [](const M& m) { return m.shown(m.of->high); })
+            .number("difference", "", significant(4), [](const M& m) { return m.shown_if(m.of->effect); })
+            .number("low", "", significant(4), [](const M& m) { return m.shown_if(m.of->low); })
+            .number("high", "", significant(4), [](const M& m) { return m.shown_if(m.of->high); })
             .text("", "difference (95 %)",
                   [](const M& m) {
                       return m.of->effect && m.of->low && m.of->high
-                                 ? with_unit(fmt::format("{} ({} to {})", m.text(*m.of->effect), m.text(*m.of->low),
-                                                         m.text(*m.of->high)),
-                                             m.of->is_log ? "" : m.unit)
+                                 ? m.text(*m.of->effect, *m.of->low, *m.of->high)
                                  : std::string();
                   })
             .number("degrees_of_freedom", "df", fixed(1), [](const M& m) { return m.of->freedom; })
             .number("p", "", significant(4), [](const M& m) { return m.of->p; })
             .text("", "p", [](const M& m) { return m.of->p ? p_text(*m.of->p) : std::string(); })
             .number("subject_deviation", "", significant(4),
-                    [](const M& m) { return m.shown(m.of->subject_deviation); })
-            .number("effect_deviation", "", significant(4), [](const M& m) { return m.shown(m.of->effect_deviation); })
+                    [](const M& m) { return m.shown_if(m.of->subject_deviation); })
+            .number("effect_deviation", "", significant(4), [](const M& m) { return m.shown_if(m.of->effect_deviation); })
             .number("residual_deviation", "", significant(4),
-                    [](const M& m) { return m.shown(m.of->residual_deviation); })
+                    [](const M& m) { return m.shown_if(m.of->residual_deviation); })
             .text("formula", "formula", [](const M& m) { return m.of->formula; })
             .text("note", "note", [](const M& m) { return m.of->note; });
     return all;
@@ -411,9 +409,7 @@ const Fields<Mixed>& mixed_fields() {
                 for (const MixedModel& one : m.of->models)
                     for (const AnalysedComparison& comparison : m.analysis->comparisons)
                         if (comparison.label == one.label) {
-                            const std::string unit =
-                                analysis::unit_of(m.analysis->protocol, comparison.of.task, comparison.of.measure);
-                            models.push_back({&one, parse_unit(unit).factor, unit});
+                            models.push_back({compared(comparison, m.analysis->protocol), &one});
                             break;
                         }
                 return models;
@@ -430,11 +426,6 @@ Result figure_of(const ExperimentAnalysis& analysis, const std::string& task, co
              return draw_group(analysis, task, measure);
          }}});
     return result;
-}
-
-const Fields<FoundExperiment>& no_fields() {
-    static const Fields<FoundExperiment> all("figure of a measure");
-    return all;
 }
 
 std::vector<std::string> warnings_of(const FoundExperiment& f) {
@@ -549,16 +540,17 @@ const Fields<FoundExperiment>& experiment_fields() {
             .child("mixed_models", "mixed models", mixed_fields(),
                    [](const F& f) { return f.mixed ? std::optional(Mixed{&*f.mixed, f.analysis}) : std::nullopt; })
             .omitted()
-            .results("", "figures", no_fields(),
-                     [](const F& f) {
-                         std::vector<Result> figures;
-                         const Protocol& protocol = f.analysis->protocol;
-                         if (protocol.is_psychophysics()) figures.push_back(figure_of(*f.analysis, "", "threshold"));
-                         for (const experiment::Task& task : protocol.tasks)
-                             for (const experiment::Measure& measure : task.measures)
-                                 figures.push_back(figure_of(*f.analysis, task.name, measure.name));
-                         return figures;
-                     })
+            .sections("figures",
+                      [](const F& f) {
+                          ResultEntry::Children figures{{}, true};
+                          const Protocol& protocol = f.analysis->protocol;
+                          if (protocol.is_psychophysics())
+                              figures.results.push_back(figure_of(*f.analysis, "", "threshold"));
+                          for (const experiment::Task& task : protocol.tasks)
+                              for (const experiment::Measure& measure : task.measures)
+                                  figures.results.push_back(figure_of(*f.analysis, task.name, measure.name));
+                          return figures;
+                      })
             .on_pages()
             .figure(
                 "Answers of each subject, and fitted functions",

@@ -47,6 +47,25 @@ display::Figure panels_for(std::size_t subjects) {
     return {panels_across * panel_width + 20.0, static_cast<double>(rows) * (panel_height + 60.0) + 30.0};
 }
 
+Axes panel_of(display::Figure& figure, std::size_t subject, const Scale& across, const Scale& up) {
+    return {figure,
+            50.0 + panel_width * static_cast<double>(subject % panels_across),
+            45.0 + (panel_height + 60.0) * static_cast<double>(subject / panels_across),
+            panel_width - 60.0,
+            panel_height,
+            across,
+            up};
+}
+
+std::string title_of(const analysis::AnalysedSubject& subject) {
+    return subject.entry.pseudonym + (subject.excluded.empty() ? "" : " (excluded)");
+}
+
+/// The middle of a mark, and half of its side.
+void draw_dot(display::Figure& figure, const display::FigurePoint& at, double half, const display::Colour& colour) {
+    figure.rectangle(at.x - half, at.y - half, 2.0 * half, 2.0 * half, colour);
+}
+
 }  // namespace
 
 display::Figure draw_psychometric(const analysis::ExperimentAnalysis& analysis) {
@@ -57,14 +76,10 @@ display::Figure draw_psychometric(const analysis::ExperimentAnalysis& analysis) 
     draw_legend(figure, protocol);
     for (std::size_t s = 0; s < std::min(analysis.subjects.size(), max_panels); ++s) {
         const analysis::AnalysedSubject& subject = analysis.subjects[s];
-        const Axes axes{figure,
-                        50.0 + panel_width * static_cast<double>(s % panels_across),
-                        45.0 + (panel_height + 60.0) * static_cast<double>(s / panels_across),
-                        panel_width - 60.0,
-                        panel_height,
-                        {stimulus.min / unit.factor, stimulus.max / unit.factor, stimulus.is_log},
-                        {0.0, 1.0, false, 0.25}};
-        axes.draw(subject.entry.pseudonym + (subject.excluded.empty() ? "" : " (excluded)"), level_label(unit),
+        const Axes axes =
+            panel_of(figure, s, {stimulus.min / unit.factor, stimulus.max / unit.factor, stimulus.is_log},
+                     {0.0, 1.0, false, 0.25});
+        axes.draw(title_of(subject), level_label(unit),
                   protocol.response.kind == experiment::ResponseKind::choice ? "correct" : "yes");
         for (std::size_t c = 0; c < subject.thresholds.size(); ++c) {
             const analysis::SubjectThreshold& one = subject.thresholds[c];
@@ -73,9 +88,8 @@ display::Figure draw_psychometric(const analysis::ExperimentAnalysis& analysis) 
                 const display::FigurePoint at =
                     axes.at(stimulus.level_at(count.level) / unit.factor, count.correct / count.trials);
                 // The area of a dot is that of its trials.
-                const double size = std::min(14.0, 2.0 * std::sqrt(count.trials));
-                figure.rectangle(at.x - 0.5 * size, at.y - 0.5 * size, size, size,
-                                 {colour.red, colour.green, colour.blue, 0.45});
+                draw_dot(figure, at, std::min(7.0, std::sqrt(count.trials)),
+                         {colour.red, colour.green, colour.blue, 0.45});
             }
             if (!one.fit) continue;
             std::vector<display::FigurePoint> curve;
@@ -99,15 +113,10 @@ display::Figure draw_matches(const analysis::ExperimentAnalysis& analysis) {
     const double n = static_cast<double>(protocol.conditions.size());
     for (std::size_t s = 0; s < std::min(analysis.subjects.size(), max_panels); ++s) {
         const analysis::AnalysedSubject& subject = analysis.subjects[s];
-        const Axes axes{figure,
-                        50.0 + panel_width * static_cast<double>(s % panels_across),
-                        45.0 + (panel_height + 60.0) * static_cast<double>(s / panels_across),
-                        panel_width - 60.0,
-                        panel_height,
-                        {0.5, n + 0.5, false, 1000.0},
-                        {stimulus.min / unit.factor, stimulus.max / unit.factor, stimulus.is_log}};
-        axes.draw(subject.entry.pseudonym + (subject.excluded.empty() ? "" : " (excluded)"),
-                  "began below | began above", s % panels_across == 0 ? level_label(unit) : "");
+        const Axes axes =
+            panel_of(figure, s, {0.5, n + 0.5, false, 1000.0},
+                     {stimulus.min / unit.factor, stimulus.max / unit.factor, stimulus.is_log});
+        axes.draw(title_of(subject), "began below | began above", s % panels_across == 0 ? level_label(unit) : "");
         for (std::size_t c = 0; c < subject.thresholds.size(); ++c) {
             const analysis::SubjectThreshold& one = subject.thresholds[c];
             const display::Colour colour = curve_colours[c % curve_colours.size()];
@@ -116,16 +125,15 @@ display::Figure draw_matches(const analysis::ExperimentAnalysis& analysis) {
                 if (trial.condition != one.condition || !trial.match || !trial.marked.empty() ||
                     trial.phase == experiment::Phase::practice)
                     continue;
-                const display::FigurePoint at =
-                    axes.at(x + (protocol.begins_above(trial.level) ? 0.2 : -0.2), *trial.match / unit.factor);
-                figure.rectangle(at.x - 2.5, at.y - 2.5, 5.0, 5.0, {colour.red, colour.green, colour.blue, 0.5});
+                draw_dot(figure,
+                         axes.at(x + (protocol.begins_above(trial.level) ? 0.2 : -0.2), *trial.match / unit.factor), 2.5,
+                         {colour.red, colour.green, colour.blue, 0.5});
             }
             if (!one.threshold || !one.interval) continue;
             const double low = std::clamp(one.interval->low, stimulus.min, stimulus.max),
                          high = std::clamp(one.interval->high, stimulus.min, stimulus.max);
             figure.line({axes.at(x, low / unit.factor), axes.at(x, high / unit.factor)}, colour, 1.5);
-            const display::FigurePoint mean = axes.at(x, *one.threshold / unit.factor);
-            figure.rectangle(mean.x - 3.5, mean.y - 3.5, 7.0, 7.0, colour);
+            draw_dot(figure, axes.at(x, *one.threshold / unit.factor), 3.5, colour);
         }
     }
     return figure;
@@ -149,16 +157,10 @@ display::Figure draw_group(const analysis::ExperimentAnalysis& analysis, const s
     for (const analysis::AnalysedSubject& subject : analysis.subjects) {
         if (!subject.excluded.empty()) continue;
         for (std::size_t g = 0; g < groups.size(); ++g) {
-            std::optional<double> value;
-            if (task.empty()) {
-                for (const analysis::SubjectThreshold& one : subject.thresholds)
-                    if (one.condition == groups[g]->condition) value = one.threshold;
-            } else if (const auto found = subject.means.find(task + " " + measure + " " + groups[g]->condition);
-                       found != subject.means.end()) {
-                value = is_log ? std::exp(found->second) : found->second;
-            }
+            const auto value =
+                analysis::value_of(analysis.protocol, subject, task, measure, groups[g]->condition);
             if (!value) continue;
-            dots.emplace_back(g, *value / factor);
+            dots.emplace_back(g, (is_log ? std::exp(*value) : *value) / factor);
             low = std::min(low, dots.back().second);
             high = std::max(high, dots.back().second);
         }
@@ -181,13 +183,10 @@ display::Figure draw_group(const analysis::ExperimentAnalysis& analysis, const s
         const display::Colour colour = curve_colours[1];
         figure.line({axes.at(x + 0.18, groups[g]->low / factor), axes.at(x + 0.18, groups[g]->high / factor)}, colour,
                     1.5);
-        const display::FigurePoint mean = axes.at(x + 0.18, groups[g]->mean / factor);
-        figure.rectangle(mean.x - 3.5, mean.y - 3.5, 7.0, 7.0, colour);
+        draw_dot(figure, axes.at(x + 0.18, groups[g]->mean / factor), 3.5, colour);
     }
-    for (const auto& [g, value] : dots) {
-        const display::FigurePoint at = axes.at(static_cast<double>(g) + 0.92, value);
-        figure.rectangle(at.x - 2.5, at.y - 2.5, 5.0, 5.0, {0x1F, 0x4E, 0x9E, 0.5});
-    }
+    for (const auto& [g, value] : dots)
+        draw_dot(figure, axes.at(static_cast<double>(g) + 0.92, value), 2.5, {0x1F, 0x4E, 0x9E, 0.5});
     return figure;
 }
 
@@ -216,8 +215,7 @@ display::Figure draw_effects(const analysis::ExperimentAnalysis& analysis) {
             for (const double margin : {-*one.of.margin, *one.of.margin})
                 figure.line({axes.at(margin, y - 0.4), axes.at(margin, y + 0.4)}, axis_soft, 1.5, 2.0);
         figure.line({axes.at(one.test->low / sd, y), axes.at(one.test->high / sd, y)}, colour, 2.0);
-        const display::FigurePoint mean = axes.at(one.test->of.mean / sd, y);
-        figure.rectangle(mean.x - 3.5, mean.y - 3.5, 7.0, 7.0, colour);
+        draw_dot(figure, axes.at(one.test->of.mean / sd, y), 3.5, colour);
     }
     return figure;
 }
