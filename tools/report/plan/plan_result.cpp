@@ -352,13 +352,12 @@ auto part_of_plan(const ShownPlan& of) { return analysis::assembly_names(of.plan
 
 const Fields<ShownPlan>& made_plan_fields() {
     using P = ShownPlan;
-    const auto list = [](const P& p) { return p.warnings.all; };
     static Fields<P> all("plan of a case");
     all.titled([](const P& p) { return p.plan.title; }).remark([](const P& p) {
         return fmt::format("Alternative '{}', {} fragments. Research use; not a medical device.",
                            p.plan.alternatives[static_cast<std::size_t>(p.plan.current)].name, p.plan.fragments.size());
     });
-    add_warnings(all, list);
+    all.part(plan_warnings_fields(), [](const P& p) -> const auto& { return p.warnings.all; });
     all.text("title", "", [](const P& p) { return p.plan.title; })
         .text("current", "alternative",
               [](const P& p) { return p.plan.alternatives[static_cast<std::size_t>(p.plan.current)].name; })
@@ -442,7 +441,7 @@ const Fields<ShownPlan>& checked_plan_fields() {
     using P = ShownPlan;
     static const Fields<P> all = [] {
         Fields<P> made("whether a plan is finished and does not contradict itself");
-        add_warnings(made, [](const P& p) { return p.warnings.all; });
+        made.part(plan_warnings_fields(), [](const P& p) -> const auto& { return p.warnings.all; });
         made.flag("ok", "", [](const P& p) { return !p.warnings.has_fault(); })
             .text("", "verdict",
                   [](const P& p) {

@@ -257,7 +257,7 @@ const Fields<MeasuredFlap>& flap_fields() {
     using F = MeasuredFlap;
     static const Fields<F> all = [] {
         Fields<F> made("flap of a plan");
-        add_warnings(made, [](const F& f) { return *f.warnings; });
+        made.part(plan_warnings_fields(), [](const F& f) -> const auto& { return *f.warnings; });
         made.part(flap_measures_fields(), [](const F& f) -> const FlapMeasures& { return *f.measures; })
             .rows("candidates", "candidates, best first", candidate_fields(),
                   [](const F& f) { return f.candidates ? numbered(*f.candidates) : std::vector<RankedCandidate>(); })
@@ -274,7 +274,7 @@ const Fields<DrapedFlap>& paddle_fields() {
     using P = skin::DrapedPaddle;
     static const Fields<D> all = [of] {
         Fields<D> made("skin paddle over a defect");
-        add_warnings(made, [](const D& d) { return d.study->warnings; });
+        made.part(plan_warnings_fields(), [](const D& d) -> const auto& { return d.study->warnings; });
         made.child("paddle", "paddle", skin_fields(), [](const D& d) -> const SkinPaddle& { return *d.paddle; })
             .number("perforator_length_mm", "length of a perforator", from_si(1, "mm"),
                     [](const D& d) { return d.study->settings.rope_length; })

@@ -3,6 +3,11 @@
 
 namespace tactus::report {
 
+namespace {
+
+using Warnings = std::vector<analysis::CaseWarning>;
+
+/// code, text, object, other, fault
 const Fields<analysis::CaseWarning>& case_warning_fields() {
     using analysis::CaseWarning;
     const auto if_any = [](std::string CaseWarning::* member) {
@@ -17,11 +22,23 @@ const Fields<analysis::CaseWarning>& case_warning_fields() {
     return all;
 }
 
-std::vector<std::string> texts_of(const std::vector<analysis::CaseWarning>& warnings, bool faults) {
+}  // namespace
+
+std::vector<std::string> texts_of(const Warnings& warnings, bool faults) {
     std::vector<std::string> texts;
     for (const analysis::CaseWarning& warning : warnings)
         if (warning.is_fault == faults) texts.push_back(warning.text);
     return texts;
+}
+
+const Fields<Warnings>& plan_warnings_fields() {
+    static const Fields<Warnings> all =
+        Fields<Warnings>("warnings of a plan")
+            .warnings(
+                "", [](const Warnings& w) { return texts_of(w, true); }, "problem")
+            .warnings("", [](const Warnings& w) { return texts_of(w, false); })
+            .rows("warnings", "", case_warning_fields(), [](const Warnings& w) -> const Warnings& { return w; });
+    return all;
 }
 
 }  // namespace tactus::report
