@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/guide_slot.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/saw/hand_limits.hpp"
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +17,11 @@ namespace tactus::saw {
 namespace {
 
 constexpr double entry = 0.3e-3;  // m by which a blade may miss the slot that it enters; it keeps that room
-constexpr double ledge_reach = 3e-3;  // m from a ledge: within it a whole blade is taken, and a part of it stays held
+constexpr double ledge_reach = 3e-3;  // m from a ledge within which it holds a blade
+constexpr double preference = 0.1e-3;  // m by which a blade must fit another slot better than the one that it is free in
+constexpr double wrong = 0.5e-3;  // m by which it must fit another ledge better than one that it touches
 constexpr double max_gap = 5e-3;  // m from its slot at which a blade is released
-constexpr double rounding = 1e-11;  // m
+constexpr double rounding = 1e-13;  // m: in a wedge of 50 N a touch that is off by so much changes the load by 0.04 N
 constexpr double taken_over = 0.1e-3;  // m of the hand over which a wall takes over the force on the blade
 constexpr double min_upright = 0.5;  // cosine of the angle beyond which a blade is in no slot
 
@@ -27,7 +31,7 @@ bool solve_small(const std::array<std::array<double, 3>, 3>& m, const std::array
     auto a = m;
     x = b;
     for (std::size_t k = 0; k < n; ++k) {
-        if (!(a[k][k] > 1e-9 * m[k][k])) return false;
+        if (!(a[k][k] > 1e-12 * m[k][k])) return false;
         for (std::size_t r = k + 1; r < n; ++r) {
             const double f = a[r][k] / a[k][k];
             for (std::size_t c = k; c < n; ++c) a[r][c] -= f * a[k][c];
@@ -41,7 +45,10 @@ bool solve_small(const std::array<std::array<double, 3>, 3>& m, const std::array
     return true;
 }
 
-bool is_upright(const Pose& local) noexcept { return std::abs(local.rotate(Vec3(0.0, 0.0, 1.0)).z) >= min_upright; }
+double upright(const Pose& local) noexcept { return std::abs(local.rotate(Vec3(0.0, 0.0, 1.0)).z); }
+bool is_upright(const Pose& local) noexcept { return upright(local) >= min_upright; }
+/// Its plane has slopes in the frame of the slot.
+bool is_placed(const Pose& local) noexcept { return upright(local) >= 0.1; }
 
 /// The shortest rotation from one unit vector to another, less than half a turn apart.
 Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept {
@@ -53,6 +60,13 @@ Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept {
 Vec3 heading_of(const Pose& local) noexcept {
     const Vec3 z = local.rotate(Vec3(0.0, 0.0, 1.0));
     return (Vec3(0.0, 0.0, 1.0) + std::copysign(1.0, z.z) * z) / (1.0 + std::abs(z.z));
+}
+
+/// How a rotation changes the slopes and the heading of a plane: of each the axis of the fastest change.
+Mat3 slope_axes(const Pose& local) noexcept {
+    const Vec3 z = local.rotate(Vec3(0.0, 0.0, 1.0));
+    return {glm::cross(z, Vec3(-1.0 / z.z, 0.0, z.x / (z.z * z.z))),
+            glm::cross(z, Vec3(0.0, -1.0 / z.z, z.y / (z.z * z.z))), heading_of(local)};
 }
 
 double beyond_ends(double at, double low, double high) noexcept { return at - std::clamp(at, low, high); }
@@ -153,60 +167,107 @@ double SlotHold::gap(const GuideSlot& slot, const Placement& at) const noexcept 
     return std::sqrt(2.0 * end_radius * deepest(slot, at, 1.0, Vec3(0.0), 0.0).recess);
 }
 
-bool SlotHold::stays_in(const GuideSlot& slot, const Placement& at) const noexcept {
-    const double away = gap(slot, at);
-    return away < max_gap && (away == 0.0 || miss(slot, at) > room_) && apart(slot, at) <= ledge_reach;
+/// Neither the springs of the hand nor the load on the blade reach a wall. `missed`: as of `miss`.
+bool SlotHold::is_clear(double missed) const noexcept {
+    double reach = 0.0;
+    for (const Vec3& p : hand_.outline) reach = std::max(reach, glm::length(p - hand_.clamp));
+    return missed + 0.5 * taken_over * std::hypot(1.0, reach / settings_.lever) <= room_;
 }
 
 const Pose& SlotHold::follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept {
-    if (slot_ >= 0) {
-        const auto n = static_cast<std::size_t>(slot_);
-        const bool is_given = n < slots.size();
-        const Placement at = placed(is_given ? slots[n].frame : walls_.frame, hand);
-        if (is_given && is_upright(at.pose) && stays_in(slots[n], at)) {
-            hand_ = at;
-        } else {
-            slot_ = -1;
-            const double force = glm::length(spring_.force), torque = glm::length(spring_.torque) / settings_.lever;
-            const double length = stretch(), part = std::min(length, max_lag);
-            const double energy = settings_.stiffness * part * (length - 0.5 * part);
-            left_ = energy > 0.0 ? fade_time : 0.0;
-            fade_stiffness_ = energy > 0.0 ? (force * force + torque * torque) / (2.0 * energy) : 0.0;
-        }
+    if (slot_ >= 0) stay(slots, hand);
+    if (slot_ < 0 && left_ > 0.0) {
+        release(hand, dt);
+        return guided_;
     }
     if (slot_ < 0) {
-        if (left_ > 0.0) {
-            release(hand, dt);
-            return guided_;
-        }
         let_go();
         guided_ = hand;
-        enter(slots, hand);
+        enter(slots, hand, infinity);
         if (slot_ < 0) return guided_;
     }
-    const GuideSlot& slot = slots[static_cast<std::size_t>(slot_)];
-    walls_ = slot;
-    // Room that the blade had when it entered closes only as the hand itself gives it up: no energy comes of it.
-    room_ = std::min(room_, std::max(0.0, miss(slot, hand_)));
-    solve(slot);
-    put();
+    share_ = std::min(1.0, share_ + dt / fade_time);
+    solve();
     pull();
+    put();
     return guided_;
 }
 
-void SlotHold::enter(std::span<const GuideSlot> slots, const Pose& hand) noexcept {
-    double nearest = ledge_reach;
+/// Whether the slot goes on holding the blade; else another one does, or none.
+void SlotHold::stay(std::span<const GuideSlot> slots, const Pose& hand) noexcept {
+    const auto n = static_cast<std::size_t>(slot_);
+    const bool is_given = n < slots.size();
+    if (is_given) walls_ = slots[n];
+    hand_ = placed(walls_.frame, hand);
+    const bool has_plane = is_placed(hand_.pose);
+    const double missed = has_plane ? miss(walls_, hand_) : infinity, away = has_plane ? gap(walls_, hand_) : infinity;
+    const bool is_free = is_clear(missed);
+    if (!is_given || !is_upright(hand_.pose) || away >= max_gap || (away > 0.0 && is_free) ||
+        apart(walls_, hand_) > ledge_reach || (!is_free && is_wrong(slots, hand))) {
+        slot_ = -1;
+        if (is_free) return;
+        left_ = fade_time;
+        weakened_ = 1.0;
+        max_load_ = load_of(spring_);
+        return;
+    }
+    // Room that the blade had when it entered closes only as the hand itself gives it up: no energy comes of it.
+    room_ = std::min(room_, std::max(0.0, missed));
+    // Ledges of neighbouring cuts are open to each other: a free blade goes from one to the other.
+    if (is_free && slots.size() > 1) enter(slots, hand, misfit(walls_, hand_) - preference);
+}
+
+/// The blade as the hand holds it: turned into the plane of the slot, a tilted one reaches farther into it.
+SlotHold::Placement SlotHold::as_held(Placement at) const noexcept {
+    const double half = 0.5 * shape_.length, back = -shape_.height;
+    at.outline = {at.pose.apply({-half, 0.0, 0.0}), at.pose.apply({half, 0.0, 0.0}), at.pose.apply({half, back, 0.0}),
+                  at.pose.apply({-half, back, 0.0})};
+    return at;
+}
+
+/// m of the part of a blade that is farthest from the walls of a slot.
+double SlotHold::misfit(const GuideSlot& slot, const Placement& at) const noexcept {
+    const Placement held = as_held(at);
+    return std::max({0.0, miss(slot, held), farthest(slot, held)});
+}
+
+bool SlotHold::is_enterable(const GuideSlot& slot, const Placement& at) const noexcept {
+    return is_upright(at.pose) && gap(slot, as_held(at)) == 0.0 && miss(slot, at) <= entry &&
+           apart(slot, at) <= ledge_reach;
+}
+
+/// Enters the slot that the blade fits best, if it fits it better than `most`.
+void SlotHold::enter(std::span<const GuideSlot> slots, const Pose& hand, double most) noexcept {
+    int best = -1;
+    if (!(most > 0.0)) return;
     for (std::size_t n = 0; n < slots.size(); ++n) {
         const Placement at = placed(slots[n].frame, hand);
-        if (!is_upright(at.pose) || gap(slots[n], at) > 0.0) continue;
-        const double missed = miss(slots[n], at), away = farthest(slots[n], at);
-        if (missed > entry || away > nearest || (slot_ >= 0 && away == nearest)) continue;
-        nearest = away;
-        slot_ = static_cast<int>(n);
+        if (!is_enterable(slots[n], at)) continue;
+        const double off = misfit(slots[n], at);
+        if (!(off < most)) continue;
+        most = off;
+        best = static_cast<int>(n);
+        walls_ = slots[n];
         hand_ = at;
-        // A free blade has the play of the slot and no more.
-        room_ = std::max(0.0, missed);
     }
+    if (best < 0) return;
+    slot_ = best;
+    // A free blade has the play of the slot and no more.
+    room_ = std::max(0.0, miss(walls_, hand_));
+    share_ = 0.0;
+}
+
+/// The hand holds the blade in the plane of another ledge, maybe pressed against that of its slot where the planes cross.
+bool SlotHold::is_wrong(std::span<const GuideSlot> slots, const Pose& hand) const noexcept {
+    if (std::isfinite(walls_.other_wall)) return false;
+    const double most = misfit(walls_, hand_) - wrong;
+    if (!(most > 0.0)) return false;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+        if (static_cast<int>(n) == slot_ || std::isfinite(slots[n].other_wall)) continue;
+        const Placement at = placed(slots[n].frame, hand);
+        if (is_enterable(slots[n], at) && misfit(slots[n], at) < most) return true;
+    }
+    return false;
 }
 
 Vec3 SlotHold::clamp_local() const noexcept {
@@ -258,7 +319,10 @@ SlotHold::Solution SlotHold::project(const GuideSlot& slot, const Vec3& hand, So
             const Touch touch = deepest(slot, hand_, sign, plane);
             if (beyond(slot, hand_, touch, plane) - room_ > rounding) rows[count++] = touch;
         }
-        if (count == found.count) break;
+        if (count == found.count) {
+            if (round == 0) found.count = 0;
+            break;
+        }
         for (std::size_t n = 0; n < count; ++n) wanted[n] = beyond(slot, hand_, rows[n], hand) - room_;
 
         std::array<std::size_t, 3> best{};
@@ -304,20 +368,20 @@ SlotHold::Solution SlotHold::project(const GuideSlot& slot, const Vec3& hand, So
             found.touches[r].force = best_force[r];
         }
         found.count = best_size;
+        if (best_y == y) break;
         y = best_y;
     }
     return found;
 }
 
-void SlotHold::solve(const GuideSlot& slot) noexcept {
-    const Solution found = project(slot, hand_.plane, {});
+void SlotHold::solve() noexcept {
+    const Solution found = project(walls_, hand_.plane, {});
     touches_ = found.touches;
     touch_count_ = found.count;
     const Vec3& y = found.offset;
     offset_ = {y.x, y.y / settings_.lever, y.z / settings_.lever};
     const double length = stretch();
     stiffness_ = settings_.stiffness * (length > max_lag ? max_lag / length : 1.0);
-    for (std::size_t r = 0; r < touch_count_; ++r) touches_[r].force *= stiffness_;
 }
 
 /// The guided pose from the plane of the hand and its offset.
@@ -335,61 +399,63 @@ void SlotHold::put() noexcept {
     guided_.orientation = glm::normalize(guided_.orientation);
 }
 
-/// Torque on the hand of forces on the slopes of its plane: their work in a rotation. `general`: N, as of (c, a · lever, b · lever).
-Vec3 SlotHold::torque_of(const Vec3& general) const noexcept {
-    const Vec3 z = hand_.pose.rotate(Vec3(0.0, 0.0, 1.0));
-    const double by_a = general[1] * settings_.lever, by_b = general[2] * settings_.lever;
-    return glm::cross(z, Vec3(-by_a / z.z, -by_b / z.z, (by_a * z.x + by_b * z.y) / (z.z * z.z)));
+/// Forces on the slopes and the heading of a plane, N as of (a · lever, b · lever) and N·m, to the torque that does the same work.
+Vec3 SlotHold::torque_of(const Vec3& general, const Pose& local) const noexcept {
+    return slope_axes(local) * (general * Vec3(settings_.lever, settings_.lever, 1.0));
 }
 
-/// The force of the springs, and that of the wedge: walls push a blade that is tilted against them, or beyond their ends, out of
-/// the slot. By the envelope theorem each touch counts as a point of the blade.
-void SlotHold::pull() noexcept {
-    const Vec3 general(offset_[0], offset_[1] * settings_.lever, offset_[2] * settings_.lever);
-    spring_ = {{0.0, 0.0, stiffness_ * general[0]}, torque_of(stiffness_ * general)};
-    const Vec3 plane = hand_.plane + offset_;
+/// What the walls do to a blade that moves in the plane of its slot: they push one that is tilted against them, or beyond
+/// their ends, out of it. By the envelope theorem each touch counts as a point of the blade. Per N/m of the springs.
+Wrench SlotHold::wedge(std::span<const Touch> touches, const Vec3& plane) const noexcept {
+    Wrench sum;
     const Vec3 heading = heading_of(hand_.pose);
-    for (std::size_t r = 0; r < touch_count_; ++r) {
-        const Touch& touch = touches_[r];
+    for (const Touch& touch : touches) {
         const double x = touch.x - hand_.clamp.x, y = touch.y - hand_.clamp.y;
         const double gx = touch.sign * plane[1] - touch.slope_x, gy = touch.sign * plane[2] - touch.slope_y;
-        spring_.force += touch.force * Vec3(touch.slope_x, touch.slope_y, 0.0);
-        spring_.torque -= touch.force * (gy * x - gx * y) * heading;
+        sum.force += touch.force * Vec3(touch.slope_x, touch.slope_y, 0.0);
+        sum.torque -= touch.force * (gy * x - gx * y) * heading;
     }
+    return sum;
+}
+
+/// The force of the springs and that of the wedge.
+void SlotHold::pull() noexcept {
+    const Vec3 general(offset_[0], offset_[1] * settings_.lever, offset_[2] * settings_.lever);
+    const Wrench springs{{0.0, 0.0, general[0]}, torque_of({general[1], general[2], 0.0}, hand_.pose)};
+    spring_ = (springs + wedge({touches_.data(), touch_count_}, hand_.plane + offset_)) * stiffness_;
+}
+
+double SlotHold::load_of(const Wrench& w) const noexcept {
+    return std::hypot(glm::length(w.force), glm::length(w.torque) / settings_.lever);
 }
 
 void SlotHold::let_go() noexcept {
     left_ = 0.0;
+    share_ = 0.0;
     offset_ = Vec3(0.0);
     touch_count_ = 0;
     spring_ = {};
 }
 
-/// The guided plane stays where it was, and no farther from the hand than the fade permits. The force becomes that of one
-/// spring per axis, which together hold the energy that was stored, and is stretched no further.
+/// The walls stay where they were, and their springs weaken: no energy comes of it. The force grows no further. The blade goes
+/// over to the hand.
 void SlotHold::release(const Pose& hand, double dt) noexcept {
-    const Placement was = hand_;
-    const double after = left_ - dt, kept = after > 1e-9 ? after / left_ : 0.0;
+    const double after = left_ - dt;
     hand_ = placed(walls_.frame, hand);
-    left_ = after;
-    if (std::abs(hand_.pose.rotate(Vec3(0.0, 0.0, 1.0)).z) < 0.1 || kept == 0.0) {
+    if (!is_placed(hand_.pose) || !(after > 1e-9)) {
         let_go();
         guided_ = hand;
         return;
     }
-    const auto fade = [kept](double from, double to) {
-        const double most = kept * std::abs(from);
-        return to * from > 0.0 ? std::clamp(to, -most, most) : 0.0;
-    };
-    const Vec3 way = hand_.clamp - was.clamp, turn = rotation_between(was.pose.orientation, hand_.pose.orientation);
-    const Vec3 plane = was.plane + offset_;
-    const Vec3 now(plane[0] + plane[1] * way.x + plane[2] * way.y, plane[1], plane[2]);
-    const double by_turn = fade_stiffness_ * settings_.lever * settings_.lever;
-    for (int n = 0; n < 3; ++n) {
-        offset_[n] = fade(offset_[n], now[n] - hand_.plane[n]);
-        spring_.force[n] = fade(spring_.force[n], spring_.force[n] - fade_stiffness_ * way[n]);
-        spring_.torque[n] = fade(spring_.torque[n], spring_.torque[n] - by_turn * turn[n]);
-    }
+    share_ *= after / left_;
+    left_ = after;
+    const double kept = left_ / fade_time;
+    solve();
+    pull();
+    weakened_ = std::min(weakened_, kept);
+    if (const double load = load_of(spring_); load * weakened_ > max_load_ * kept) weakened_ = max_load_ * kept / load;
+    spring_ = spring_ * weakened_;
+    offset_ *= kept;
     put();
 }
 
@@ -405,22 +471,29 @@ Wrench SlotHold::on_hand(const Wrench& on_blade) const noexcept {
     const Quat back = glm::conjugate(walls_.frame.orientation);
     Vec3 force = back * on_blade.force;
     Vec3 torque = back * on_blade.torque + glm::cross(blade.position - blade.apply(clamp_local()), force);
+    const Vec3 by_slopes = glm::inverse(slope_axes(blade)) * torque;
     // What the walls carry of the force on the blade: as much of it as the guided pose does not follow a hand that goes to and
     // fro along it. A constant force on the blade stays the gradient of an energy on the hand.
-    Vec3 general(force.z, -torque.y / settings_.lever, torque.x / settings_.lever);
-    if (const double size = glm::length(general); size > 0.0) {
+    Vec3 general(force.z, by_slopes[0] / settings_.lever, by_slopes[1] / settings_.lever);
+    Wrench sum = spring_;
+    if (const double size = glm::length(general); size * share_ > 1e-12) {
         const Vec3 along = general * (0.5 * taken_over / size);
         const Vec3 step(along[0], along[1] / settings_.lever, along[2] / settings_.lever);
-        // In a release the touches are those of the last pose in the slot.
         Solution near;
-        if (slot_ >= 0) near.touches = touches_, near.count = touch_count_;
-        const Vec3 held =
-            project(walls_, hand_.plane - step, near).offset - project(walls_, hand_.plane + step, near).offset;
-        general -= held * (size / taken_over * (slot_ >= 0 ? 1.0 : left_ / fade_time));
+        near.touches = touches_, near.count = touch_count_;
+        const Solution less = project(walls_, hand_.plane - step, near), more = project(walls_, hand_.plane + step, near);
+        const double carried = share_ * size / taken_over;
+        general += (more.offset - less.offset) * carried;
+        const auto pushed = [&](const Solution& at, const Vec3& plane) {
+            const Vec3& y = at.offset;
+            return wedge({at.touches.data(), at.count},
+                         plane + Vec3(y.x, y.y / settings_.lever, y.z / settings_.lever));
+        };
+        sum = sum + (pushed(more, hand_.plane + step) + pushed(less, hand_.plane - step) * -1.0) * carried;
     }
     force.z = general[0];
-    force += spring_.force;
-    torque = torque.z * heading_of(hand_.pose) + torque_of(general) + spring_.torque +
+    force += sum.force;
+    torque = torque_of({general[1], general[2], by_slopes[2]}, hand_.pose) + sum.torque +
              glm::cross(hand_.clamp - hand_.pose.position, force);
     return {walls_.frame.orientation * force, walls_.frame.orientation * torque};
 }

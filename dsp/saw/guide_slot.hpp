@@ -52,16 +52,18 @@ public:
     SlotHold() = default;
     SlotHold(const SawShape& shape, const SlotSettings& settings);
 
-    /// One tick of `dt` s. The nearest slot holds the blade from when it is entered, with the blade between its walls, until
-    /// the blade has left it and its round ends do not touch it any more. A blade that is turned out of its slot, or farther
-    /// from it than 5 mm, is released, as is one for which no slots are given: the force fades over `fade_time`.
-    /// Allocates nothing.
+    /// One tick of `dt` s. A slot holds the blade from when it is entered, with the blade between its walls, until the blade
+    /// has left it and its round ends do not touch it any more. Of several slots the one holds it that it fits best over its
+    /// whole length: ledges of neighbouring cuts are open to each other and their planes cross, so that a blade on one of
+    /// them is near the other. A blade that touches a ledge keeps it unless
+    /// it fits another one better by 0.5 mm. It then is released, as are one that is turned out of its slot, one farther from it
+    /// than 5 mm, and one for which no slots are given: the force fades over `fade_time`. Allocates nothing.
     const Pose& follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept;
     /// The hand jumped: without a fade.
     void drop() noexcept { *this = SlotHold(shape_, settings_); }
 
     /// Force on the hand at the pose of the last `follow`: that of the springs, and `on_blade` (about the origin of the
-    /// guided pose) except for the part that the walls carry.
+    /// guided pose) except for the part that the walls carry. They take it over within `fade_time` of `enter`.
     Wrench on_hand(const Wrench& on_blade) const noexcept;
 
     const Pose& pose() const noexcept { return guided_; }
@@ -77,13 +79,13 @@ private:
         double recess = 0.0;  // m by which the wall has receded
         double sign = 1.0;  // 1: the wall at greater z
         Vec3 normal{0.0};  // of the constraint in (c, a · lever, b · lever)
-        double force = 0.0;  // N, its multiplier
+        double force = 0.0;  // m, its multiplier
     };
     static constexpr std::size_t max_touches = 3;
     /// The way of a plane to the nearest one that the walls permit.
     struct Solution {
         Vec3 offset{0.0};  // m, in (c, a · lever, b · lever)
-        std::array<Touch, max_touches> touches{};  // forces in m; of one touch maybe two near each other
+        std::array<Touch, max_touches> touches{};  // of one touch maybe two near each other
         std::size_t count = 0;
     };
     /// The blade of the hand in the frame of a slot.
@@ -100,24 +102,30 @@ private:
                   double crown = wall_crown) const noexcept;
     double beyond(const GuideSlot& slot, const Placement& at, const Touch& touch, const Vec3& plane) const noexcept;
     double gap(const GuideSlot& slot, const Placement& at) const noexcept;
-    bool stays_in(const GuideSlot& slot, const Placement& at) const noexcept;
-    void enter(std::span<const GuideSlot> slots, const Pose& hand) noexcept;
+    void stay(std::span<const GuideSlot> slots, const Pose& hand) noexcept;
+    bool is_clear(double missed) const noexcept;
+    bool is_wrong(std::span<const GuideSlot> slots, const Pose& hand) const noexcept;
+    bool is_enterable(const GuideSlot& slot, const Placement& at) const noexcept;
+    Placement as_held(Placement at) const noexcept;
+    double misfit(const GuideSlot& slot, const Placement& at) const noexcept;
+    void enter(std::span<const GuideSlot> slots, const Pose& hand, double most) noexcept;
     /// `found`: touches from which the search begins.
     Solution project(const GuideSlot& slot, const Vec3& hand, Solution found) const noexcept;
-    void solve(const GuideSlot& slot) noexcept;
+    void solve() noexcept;
     void pull() noexcept;
     void release(const Pose& hand, double dt) noexcept;
     void let_go() noexcept;
     void put() noexcept;
-    Vec3 torque_of(const Vec3& general) const noexcept;
+    Vec3 torque_of(const Vec3& general, const Pose& local) const noexcept;
+    Wrench wedge(std::span<const Touch> touches, const Vec3& plane) const noexcept;
+    double load_of(const Wrench& w) const noexcept;  // N, with torques at the lever
     Vec3 clamp_local() const noexcept;
     std::array<double, 2> bounds(const GuideSlot& slot) const noexcept;
     /// m by which the blade of the hand passes the walls; negative: it is free.
     double miss(const GuideSlot& slot, const Placement& at) const noexcept;
     /// m between the blade of the hand and a ledge; 0 between two walls.
     double apart(const GuideSlot& slot, const Placement& at) const noexcept;
-    /// m from a ledge of the part of the blade that is farthest from it; 0 between two walls. Ledges of neighbouring cuts
-    /// are open to each other: a blade on one of them crosses the other.
+    /// m from a ledge of the part of the blade that is farthest from it; 0 between two walls.
     double farthest(const GuideSlot& slot, const Placement& at) const noexcept;
     /// m, of the springs, in the metric of the clamp.
     double stretch() const noexcept;
@@ -128,7 +136,8 @@ private:
     double left_ = 0.0;  // s of the fade
     double room_ = 0.0;  // m beyond the walls
     double stiffness_ = 0.0;  // N/m: beyond `max_lag` less than that of the settings
-    double fade_stiffness_ = 0.0;  // N/m, of the springs into which a release turns the force
+    double share_ = 0.0;  // of the load on the blade that walls may carry
+    double weakened_ = 1.0, max_load_ = 0.0;  // of the springs in a release; N, as it began
     GuideSlot walls_;  // of the last slot that held the blade
     Pose guided_;
     Placement hand_;

@@ -224,13 +224,125 @@ TEST_CASE("a ledge is reached from afar without a force, and lets the blade go o
     CHECK(at(20.6 * mm) > 0.05);
 }
 
+/// Two ledges of facing cuts on one bone, whose planes cross that far above it. Angles above 0: the other ledge leans away, and
+/// above the crossing they face each other. Below 0: it leans over the first one, and above the crossing they stand back to
+/// back, as those of a fibula's segments do.
+std::vector<saw::GuideSlot> crossing_ledges(double angle, double height) {
+    saw::GuideSlot one = slot_above(), other = slot_above();
+    one.other_wall = other.other_wall = infinity;
+    const Quat lean = rotation_by(Vec3(-angle, 0.0, 0.0));
+    other.frame.orientation = lean * glm::angleAxis(M_PI, Vec3(0.0, 0.0, 1.0)) * teeth_down;
+    other.frame.position = Vec3(0.0, 0.0, height) - lean * Vec3(0.0, 0.0, height);
+    return {one, other};
+}
+
+TEST_CASE("of two ledges whose planes cross, a hand saws in either, wherever it comes from") {
+    const saw::SawShape shape = guided_blade();
+    const Random random{29};
+    std::uint64_t run = 0;
+    for (const double angle : {-40.0, -28.0, -20.0, -10.0, -5.0, 5.0, 10.0, 20.0, 28.0, 40.0})
+        for (const double height : {0.5, 1.0, 2.0, 3.5, 5.0})
+            for (const std::size_t cut : {0u, 1u})
+                for (int approach = 0; approach < 4; ++approach, ++run) {
+                    const auto drawn = [&](std::uint64_t n) { return random.uniform(20 * run + n); };
+                    std::vector<saw::GuideSlot> slots = crossing_ledges(angle * degree, height * mm);
+                    // One of the blocks may be higher than the other: the blade meets the wrong mouth first.
+                    if (angle > 0.0) slots[1 - cut].top -= 3.0 * mm * drawn(1);
+                    const Pose plan = slots[cut].frame;
+                    saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+                    // A hand that does not lie on plan: away from its ledge, turned in the cut and along it.
+                    const Vec3 off(4.0 * mm * (drawn(2) - 0.5), 0.0, 0.1 * mm * drawn(3));
+                    const double leans = 0.1 * std::abs(angle) * degree * drawn(4);
+                    const Quat turn = rotation_by(Vec3(-leans, 0.0, drawn(5) - 0.5));
+                    CAPTURE(angle, height, cut, approach);
+                    double farthest = 0.0, turned = 0.0, force = 0.0;
+                    const auto go = [&](const Pose& hand) {
+                        const Pose at = hold.follow(slots, hand, 1e-3);
+                        farthest = std::max(farthest, glm::length(at.position - hand.position));
+                        turned = std::max(turned, glm::length(rotation_between(hand.orientation, at.orientation)));
+                        force = std::max(force, glm::length(hold.on_hand({}).force));
+                    };
+                    // Over both blocks, from beside them, as straight as it was in another cut.
+                    const Pose above = plan * Pose{off + Vec3(0.0, -24.0 * mm, 0.0), turn};
+                    const Pose beside{above.position + Vec3(0.0, 60.0 * mm * (drawn(6) - 0.5), 5.0 * mm * drawn(7)),
+                                      rotation_by(Vec3(0.8 * (drawn(8) - 0.5), 0.0, 0.0)) * above.orientation};
+                    for (int n = 0; n <= 1000; ++n)
+                        go({glm::mix(beside.position, above.position, n / 1000.0),
+                            glm::slerp(beside.orientation, above.orientation, n / 1000.0)});
+                    for (int n = 0; n <= 2000; ++n)
+                        go(plan * Pose{off + Vec3(0.0, -24.0 * mm + 32.0 * mm * n / 2000.0, 0.0), turn});
+                    CHECK(hold.slot() == static_cast<int>(cut));
+                    CHECK(farthest < 1.0 * mm);
+                    CHECK(turned < 0.1 * std::abs(angle) * degree + 0.01);
+                    CHECK(force < 1.0);
+                }
+}
+
+TEST_CASE("between two ledges a hand passes without a force, and one that presses in the other's plane changes over") {
+    const saw::SawShape shape = guided_blade();
+    for (const double angle : {-40.0, -28.0, -20.0, -10.0, 5.0, 10.0, 20.0, 28.0, 40.0})
+        for (const double height : {0.5, 2.0, 5.0}) {
+            const std::vector<saw::GuideSlot> slots = crossing_ledges(angle * degree, height * mm);
+            CAPTURE(angle, height);
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            double force = 0.0, largest = 0.0;
+            Wrench last;
+            const auto go = [&](const Pose& hand) {
+                hold.follow(slots, hand, 1e-3);
+                const Wrench now = hold.on_hand({});
+                force = std::max(force, glm::length(now.force));
+                largest = std::max(largest, glm::length(now.force - last.force));
+                last = now;
+            };
+            // Where they face each other, from one to the other and back.
+            const auto between = [&](double share) {
+                const Quat lean = rotation_by(Vec3(-share * angle * degree, 0.0, 0.0));
+                return Pose{Vec3(0.0, 0.0, height * mm) +
+                                lean * Vec3(0.0, 0.0, std::max(0.6 * mm / std::sin(angle * degree), 5.0 * mm)),
+                            lean * teeth_down};
+            };
+            if (angle > 0.0) {
+                for (int n = 0; n <= 2000; ++n) {
+                    go(between(0.02 + 0.96 * (1.0 - std::abs(n / 1000.0 - 1.0))));
+                    if (n == 200 || n == 1000) CHECK(hold.slot() == (n == 1000));
+                }
+                CHECK(hold.slot() == 0);
+                CHECK(force < 1e-6);
+                continue;
+            }
+            // Along the first ledge into the bone, and there, against it, into the plane of the second one.
+            const auto on = [&](std::size_t n, double deep) {
+                return slots[n].frame * Pose{Vec3(0.0, deep, 0.05 * mm), {1.0, 0.0, 0.0, 0.0}};
+            };
+            for (int n = 0; n <= 500; ++n) go(on(0, -20.0 * mm + 24.0 * mm * n / 500.0));
+            CHECK(hold.slot() == 0);
+            const Pose from = on(0, 4.0 * mm), to = on(1, 4.0 * mm);
+            const Quat turned = to.orientation * glm::angleAxis(M_PI, Vec3(0.0, 1.0, 0.0));
+            for (int n = 0; n <= 1500; ++n) {
+                const double share = std::min(1.0, n / 1000.0);
+                go({glm::mix(from.position, to.position, share), glm::slerp(from.orientation, turned, share)});
+            }
+            CHECK(hold.slot() == 1);
+            CHECK(glm::length(last.force) < 0.5);
+            CAPTURE(force);
+            CHECK(largest < 0.05 * force);
+        }
+}
+
 /// A hand that goes into the slot, presses in all directions, and comes back to where it started.
 struct SlotPath {
     Random random;
     std::uint64_t run = 0;
 
     Pose operator()(double s) const {
-        const double in = std::clamp(std::min(s, 1.0 - s) / 0.2, 0.0, 1.0), aside = in * in * (3.0 - 2.0 * in);
+        const double in = std::clamp(std::min(s, 1.0 - s) / 0.2, 0.0, 1.0);
+        return at(s, in * in * (3.0 - 2.0 * in));
+    }
+    /// In the slot all the time, from its middle.
+    Pose loop(double s) const { return at(s, 1.0); }
+
+private:
+    Pose at(double s, double aside) const {
         double v[6] = {};
         for (std::uint64_t axis = 0; axis < 6; ++axis)
             for (std::uint64_t h = 1; h <= 3; ++h)
@@ -332,6 +444,68 @@ TEST_CASE("what the walls carry of a force on the blade changes without a step")
         CHECK(jump_of_torque < 5e-3);
     }
     CHECK(refined > 20);
+}
+
+TEST_CASE("a hand does not feel what a wall carries") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    for (const double side : {-1.0, 1.0})
+        for (const double pressed : {0.1, 0.2, 0.5}) {
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            const auto hand = [&](double share) {
+                return Pose{Vec3(0.0, 0.25 * mm + side * share * (0.25 + pressed) * mm, 0.0), teeth_down};
+            };
+            for (int n = 0; n <= 300; ++n) hold.follow(slots, hand(n / 300.0), 1e-3);
+            REQUIRE(hold.slot() == 0);
+            // It presses the blade against the wall at the mouth of the slot, where the clamp is nearest.
+            const Vec3 load(0.0, side * 5.0, 0.0);
+            const Wrench on_blade{load, glm::cross(Vec3(0.0, 0.0, 15.5 * mm) - hold.pose().position, load)};
+            const Wrench with = hold.on_hand(on_blade), without = hold.on_hand({});
+            CAPTURE(side, pressed);
+            CHECK(glm::length(without.force) > 0.05);
+            // At 0.1 mm the wall has not taken over all of it.
+            CHECK(glm::length(with.force - without.force) < (pressed > 0.1 ? 0.1 : 1.0));
+            CHECK(glm::length(with.torque - without.torque) < (pressed > 0.1 ? 0.002 : 0.02));
+            // Away from it, it is felt where the hand is free.
+            saw::SlotHold middle(shape, {.stiffness = 10e3, .thickness = kerf});
+            for (int n = 0; n <= 300; ++n) middle.follow(slots, hand(0.0), 1e-3);
+            CHECK(glm::length(middle.on_hand(on_blade).force - load) < 1e-9);
+        }
+}
+
+TEST_CASE("a constant load on a held blade does no work on a hand that returns to where it was") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    for (int axis = 0; axis < 6; ++axis)
+        for (std::uint64_t run = 0; run < 6; ++run) {
+            const SlotPath path{Random{23}, run};
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            Wrench load;
+            (axis < 3 ? load.force : load.torque)[axis % 3] = axis < 3 ? 5.0 : 0.1;
+            // In the slot, and from its middle once round.
+            for (int n = 0; n < 200; ++n) hold.follow(slots, path.loop(0.0), 1e-3);
+            double work = 0.0, exchanged = 0.0;
+            Pose last = path.loop(0.0), blade = hold.pose();
+            Wrench felt = hold.on_hand(load) + hold.on_hand({}) * -1.0;
+            constexpr int ticks = 8000;
+            for (int n = 1; n <= ticks; ++n) {
+                const Pose hand = path.loop(static_cast<double>(n) / ticks);
+                hold.follow(slots, hand, 1e-3);
+                REQUIRE(hold.slot() == 0);
+                const Wrench now = hold.on_hand(load) + hold.on_hand({}) * -1.0, mean = (felt + now) * 0.5;
+                const double part = glm::dot(mean.force, hand.position - last.position) +
+                                    glm::dot(mean.torque, rotation_between(last.orientation, hand.orientation));
+                // A constant torque does work on a blade that turns about several axes.
+                const double on_blade = glm::dot(load.torque, rotation_between(blade.orientation, hold.pose().orientation));
+                work += part - (axis < 3 ? 0.0 : on_blade);
+                exchanged += std::abs(part);
+                felt = now;
+                last = hand;
+                blade = hold.pose();
+            }
+            CAPTURE(axis, run, work * 1e3, exchanged * 1e3);
+            CHECK(std::abs(work) < 0.02 * exchanged + 1e-6);
+        }
 }
 
 TEST_CASE("what acts on the blade in the plane of its slot does the same work on a hand, however it is tilted") {
@@ -452,6 +626,118 @@ TEST_CASE("a slot that is taken away lets its force fade, and gives no more ener
         CHECK(work <= 1.02 * stored + 1e-9);
         CHECK(glm::length(felt.force) == 0.0);
     }
+}
+
+TEST_CASE("a wall takes over the load on a blade slowly, where a blade enters at it and where it is released") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    const Random random{31};
+    int carried = 0;
+    for (std::uint64_t run = 0; run < 60; ++run) {
+        const auto drawn = [&](std::uint64_t n) { return random.uniform(20 * run + n); };
+        saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+        // At a wall or up to 0.3 mm beyond it, in the slot from the first tick on or in through its mouth.
+        const double side = drawn(1) < 0.5 ? -1.0 : 1.0, beside = 0.25 * mm + side * (0.25 + 0.3 * drawn(2)) * mm;
+        const double mouth = drawn(3) < 0.5 ? 16.0 * mm : 10.0 * mm;
+        const Vec3 load(0.0, side * 5.0, 0.0);
+        const Wrench on_blade{load, glm::cross(Vec3(0.0, 0.0, -4.0 * mm), load)};
+        double jump = 0.0, least = 5.0;
+        Wrench last = on_blade;
+        // Beyond the walls it is pressed by less than 0.1 mm, and the springs give less than 1 N.
+        for (int n = 0; n < 700; ++n) {
+            const double down = std::min(1.0, n / 400.0);
+            const Pose hand{Vec3(0.0, beside - side * 0.2 * mm * down, mouth - 6.0 * mm * down), teeth_down};
+            hold.follow(n < 500 ? std::span<const saw::GuideSlot>(slots) : std::span<const saw::GuideSlot>(), hand,
+                        1e-3);
+            const Wrench now = hold.on_hand(on_blade);
+            jump = std::max(jump, glm::length(now.force - last.force));
+            least = std::min(least, glm::length(now.force));
+            last = now;
+        }
+        CAPTURE(run, side, beside * 1e3, least);
+        CHECK(jump < 0.4);
+        CHECK(glm::length(last.force - load) == 0.0);
+        carried += least < 3.0;
+    }
+    CHECK(carried > 10);
+}
+
+TEST_CASE("a hand that is released late feels the torque on the blade as it is") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    for (const double tilt : {0.0, 0.3, 0.6, 0.9, 1.3})
+        for (const int axis : {0, 1, 2}) {
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            const auto hand = [&](double share) {
+                return Pose{Vec3(0.0, 0.25 * mm, 5.0 * mm), rotation_by(Vec3(share * tilt, 0.0, 0.0)) * teeth_down};
+            };
+            for (int n = 0; n <= 300; ++n) hold.follow(slots, hand(std::min(1.0, n / 200.0)), 1e-3);
+            Wrench load;
+            load.torque[axis] = 0.1;
+            Wrench felt;
+            double jump = 0.0;
+            for (int n = 0; n < 110; ++n) {
+                hold.follow({}, hand(1.0), 1e-3);
+                const Wrench now = hold.on_hand(load);
+                if (n > 0) jump = std::max(jump, glm::length(now.torque - felt.torque));
+                felt = now;
+                if (n != 97) continue;
+                const Vec3 of_load = now.torque - hold.on_hand({}).torque;
+                CAPTURE(tilt, axis, of_load.x, of_load.y, of_load.z);
+                CHECK(glm::length(of_load - load.torque) < 0.01);
+            }
+            CAPTURE(tilt, axis, jump);
+            CHECK(glm::length(felt.torque - load.torque) < 1e-12);
+        }
+}
+
+TEST_CASE("a wedged blade that is released while the hand moves loses its force without a step, and gives none away") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    int wedged = 0;
+    for (std::uint64_t run = 0; run < 30; ++run)
+        for (const double at : {0.3, 0.45, 0.6, 0.75}) {
+            const SlotPath path{Random{37}, run};
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            constexpr int ticks = 2000;
+            double work = 0.0, bound = 0.0, jump = 0.0, most = 0.0;
+            Wrench felt;
+            Pose last = path(0.0);
+            for (int n = 0; n <= ticks; ++n) {
+                const double s = static_cast<double>(n) / ticks;
+                const Pose hand = path(s);
+                const bool is_released = s >= at;
+                const std::vector<saw::GuideSlot> given = is_released ? std::vector<saw::GuideSlot>{} : slots;
+                const saw::SlotHold before = hold;
+                hold.follow(given, hand, 1e-3);
+                const Wrench now = hold.on_hand({});
+                const Vec3 way = hand.position - last.position,
+                           turn = rotation_between(last.orientation, hand.orientation);
+                work += glm::dot(felt.force, way) + glm::dot(felt.torque, turn);
+                bound += 0.5 * (std::abs(glm::dot(now.force - felt.force, way)) +
+                                std::abs(glm::dot(now.torque - felt.torque, turn)));
+                if (is_released) most = std::max(most, glm::length(now.force));
+                // The same motion in 16 ticks of a 16th: what is no step becomes small, but for the fade.
+                if (is_released && glm::length(now.force - felt.force) > 0.02 * glm::length(felt.force) + 0.2) {
+                    saw::SlotHold fine = before;
+                    Wrench was = felt;
+                    for (int k = 1; k <= 16; ++k) {
+                        fine.follow(given, path(s + (k / 16.0 - 1.0) / ticks), 1e-3 / 16.0);
+                        const Wrench step = fine.on_hand({});
+                        jump = std::max(jump, glm::length(step.force - was.force));
+                        was = step;
+                    }
+                    ++wedged;
+                }
+                felt = now;
+                last = hand;
+            }
+            CAPTURE(run, at, most, work * 1e3, bound * 1e3);
+            CHECK(jump < 0.02 * most + 0.1);
+            CHECK(work <= 1.02 * bound + 1e-6);
+            CHECK(glm::length(felt.force) == 0.0);
+        }
+    CHECK(wedged > 20);
 }
 
 TEST_CASE("a running blade that misses the slot stops at the guide, and is free above it") {
