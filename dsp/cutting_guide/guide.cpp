@@ -345,7 +345,7 @@ private:
             const Slot& s = slots_[n];
             const double open = s.sides == Sides::one && !s.faces ? std::max(width, ledge) : width;
             Body between{plane(s.normal, s.origin + open * s.normal), plane(-s.normal, s.origin)};
-            if (s.faces) between.push_back(beyond_crossing(s, slots_[*s.faces]));
+            if (s.faces) between.push_back(beyond_crossing(s, slots_[*s.faces], width));
             Body body = between;
             body.push_back(side(1, -1.0, rail_y_));
             solid.cuts.push_back(std::move(body));
@@ -359,13 +359,13 @@ private:
         add_texts(solid);
     }
 
-    /// Negative where the plane of `a` has passed that of `b`, at any x: only there the blade of `a` needs room in the
-    /// wall of `b`, whose face is on plan.
-    static Term beyond_crossing(const Slot& a, const Slot& b) {
+    /// Negative where the plane of `a`, moved out by `out`, has passed that of `b`, at any x. With the width of its slot:
+    /// only there the blade of `a` needs room in the wall of `b`, whose face is on plan.
+    static Term beyond_crossing(const Slot& a, const Slot& b, double out = 0.0) {
         const double ratio = b.normal.x / a.normal.x;
         Vec3 normal = b.normal - ratio * a.normal;
         const double size = glm::length(normal),
-                     d = glm::dot(b.normal, b.origin) - ratio * glm::dot(a.normal, a.origin);
+                     d = glm::dot(b.normal, b.origin) - ratio * (glm::dot(a.normal, a.origin) + out);
         // Parallel planes cross nowhere.
         if (size < 1e-6) return {Term::Kind::plane, Vec3(0.0), Vec3(0.0), -1.0};
         return {Term::Kind::plane, normal / size, Vec3(0.0), d / size + overlap};

@@ -17,6 +17,17 @@ using namespace tactus::cutting_guide;
 
 namespace {
 
+/// Vertices of the mesh in the room that a blade against the wall on plan needs, off its faces.
+std::size_t vertices_in_room(const MadeGuide& made, const MadeSlot& slot, const GuideSettings& set) {
+    constexpr double skin = 0.1 * mm;
+    return static_cast<std::size_t>(std::ranges::count_if(made.surface.vertices, [&](const Vec3& v) {
+        const Vec3 p = v - slot.middle;
+        const double across = glm::dot(p, slot.cut.plane.normal);
+        return across > skin && across < set.blade - skin && std::abs(glm::dot(p, slot.deep)) < 0.5 * slot.depth &&
+               std::abs(glm::dot(p, slot.wide)) < 0.5 * slot.length - 1.0 * mm;
+    }));
+}
+
 void check_guide(unsigned seed, int segments) {
     INFO("seed " << seed);
     const GuideDesign design = test::random_guide(seed, segments);
@@ -31,6 +42,7 @@ void check_guide(unsigned seed, int segments) {
         INFO("slot " << slot.cut.letter);
         CHECK(std::abs(fit.offset) < 0.05 * mm);
         CHECK(fit.angle < 0.1 * degree);
+        CHECK(vertices_in_room(made, slot, design.settings) == 0);
         if (slot.sides != Sides::one) CHECK(fit.width == Approx(design.settings.slot_width()).margin(0.05 * mm));
         if (slot.play) CHECK(std::tan(*slot.play) * slot.depth == Approx(2.0 * design.settings.clearance).margin(1e-9));
     }
@@ -49,6 +61,27 @@ TEST_CASE("a random guide is closed, one part, on plan and seats", "[slow]") { c
 // Costly: the guides of 40 bones, directions, slot kinds and sizes, each meshed and checked.
 TEST_CASE("40 random guides are closed, one part, on plan and seat", "[long]") {
     for (unsigned seed = 100; seed < 140; ++seed) check_guide(seed, 1 + static_cast<int>(seed % 2));
+}
+
+TEST_CASE("where the planes of two facing cuts cross in the guide, either blade has room", "[slow]") {
+    GuideDesign design = test::random_guide(5, 2);
+    design.settings.blade = 0.6 * mm, design.settings.clearance = 0.25 * mm, design.settings.depth = 15.0 * mm;
+    design.settings.sides = Sides::three;
+    // 1 mm apart at the bone, and crossing 2 mm above it.
+    const Vec3 up = glm::normalize(design.removal), axis = design.along;
+    const double lean = 14.0 * degree;
+    const Vec3 top = design.cuts[1].plane.origin + 7.5 * mm * up;
+    design.cuts[1].plane = {top, std::cos(lean) * axis - std::sin(lean) * up};
+    design.cuts[2].plane = {top + 1.0 * mm * axis, -std::cos(lean) * axis - std::sin(lean) * up};
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::flaws_of(made.surface) == "none");
+    CHECK(test::parts_of(made.surface) == 1);
+    REQUIRE(made.slots.size() == 4);
+    CHECK(made.slots[1].sides == Sides::one);
+    for (const MadeSlot& slot : made.slots) {
+        INFO("slot " << slot.cut.letter);
+        CHECK(vertices_in_room(made, slot, design.settings) == 0);
+    }
 }
 
 TEST_CASE("letters of a guide are read back from its rail", "[slow]") {
