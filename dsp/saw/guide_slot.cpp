@@ -24,6 +24,7 @@ constexpr double max_gap = 5e-3;  // m from its slot at which a blade is release
 constexpr double rounding = 1e-13;  // m: in a wedge of 50 N a touch that is off by so much changes the load by 0.04 N
 constexpr double taken_over = 0.1e-3;  // m of the hand over which a wall takes over the force on the blade
 constexpr double min_upright = 0.5;  // cosine of the angle beyond which a blade is in no slot
+constexpr double min_upright_entry = 0.87;  // beyond which it enters none
 
 /// Solves the symmetric system of `n` ≤ 3 rows; false if it is singular.
 bool solve_small(const std::array<std::array<double, 3>, 3>& m, const std::array<double, 3>& b, std::size_t n,
@@ -200,7 +201,7 @@ void SlotHold::stay(std::span<const GuideSlot> slots, const Pose& hand) noexcept
     if (is_given) walls_ = slots[n];
     hand_ = placed(walls_.frame, hand);
     const bool has_plane = is_placed(hand_.pose);
-    const double missed = has_plane ? miss(walls_, hand_) : infinity, away = has_plane ? gap(walls_, hand_) : infinity;
+    const double missed = has_plane ? miss(walls_, hand_) : infinity, away = has_plane ? gap(walls_, as_held(hand_)) : infinity;
     const bool is_free = is_clear(missed);
     if (!is_given || !is_upright(hand_.pose) || away >= max_gap || (away > 0.0 && is_free) ||
         apart(walls_, hand_) > ledge_reach || (!is_free && is_wrong(slots, hand))) {
@@ -232,8 +233,8 @@ double SlotHold::misfit(const GuideSlot& slot, const Placement& at) const noexce
 }
 
 bool SlotHold::is_enterable(const GuideSlot& slot, const Placement& at) const noexcept {
-    return is_upright(at.pose) && gap(slot, as_held(at)) == 0.0 && miss(slot, at) <= entry &&
-           apart(slot, at) <= ledge_reach;
+    return upright(at.pose) >= min_upright_entry && gap(slot, as_held(at)) == 0.0 && miss(slot, at) <= entry &&
+           misfit(slot, at) <= ledge_reach;
 }
 
 /// Enters the slot that the blade fits best, if it fits it better than `most`.

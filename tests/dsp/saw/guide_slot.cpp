@@ -265,7 +265,7 @@ TEST_CASE("of two ledges whose planes cross, a hand saws in either, wherever it 
                     // Over both blocks, from beside them, as straight as it was in another cut.
                     const Pose above = plan * Pose{off + Vec3(0.0, -24.0 * mm, 0.0), turn};
                     const Pose beside{above.position + Vec3(0.0, 60.0 * mm * (drawn(6) - 0.5), 5.0 * mm * drawn(7)),
-                                      rotation_by(Vec3(0.8 * (drawn(8) - 0.5), 0.0, 0.0)) * above.orientation};
+                                      rotation_by(Vec3(2.0 * (drawn(8) - 0.5), 0.0, 0.0)) * above.orientation};
                     for (int n = 0; n <= 1000; ++n)
                         go({glm::mix(beside.position, above.position, n / 1000.0),
                             glm::slerp(beside.orientation, above.orientation, n / 1000.0)});
@@ -298,7 +298,7 @@ TEST_CASE("between two ledges a hand passes without a force, and one that presse
             const auto between = [&](double share) {
                 const Quat lean = rotation_by(Vec3(-share * angle * degree, 0.0, 0.0));
                 return Pose{Vec3(0.0, 0.0, height * mm) +
-                                lean * Vec3(0.0, 0.0, std::max(0.6 * mm / std::sin(angle * degree), 5.0 * mm)),
+                                lean * Vec3(0.0, 0.0, std::max(0.6 * mm / std::sin(angle * degree), 7.0 * mm)),
                             lean * teeth_down};
             };
             if (angle > 0.0) {

@@ -112,3 +112,31 @@ TEST_CASE("plan, guide, saw and score are one sequence of commands", "[long]") {
                Catch::Matchers::Matches("[^]*\n +A +0\\.[0-9]+ mm rms, [0-9.]+ mm at most, [^\n]*from the plan[^]*"));
     CHECK_THAT(printed, Catch::Matchers::Matches("[^]*\n +D +not made[^]*"));
 }
+
+// The tutorial on plan, guide and saw. Planes of facing cuts, B with C and D with E, cross near the bone: their slots are
+// ledges that are open to each other.
+TEST_CASE("every cut of the tutorial's guide is sawn on plan", "[long]") {
+    test::Folder folder;
+    const auto in = [&](const char* name) { return (folder.path / name).string(); };
+    const auto run = [&](const std::string& line) {
+        const test::Outcome out = folder.tactus(line);
+        INFO(line << ": " << out.err);
+        REQUIRE(out.code == 0);
+        return out.out;
+    };
+    run("flap -o " + in("flap"));
+    run("plan reconstruct " + in("case.plan.json") + " " + in("flap/INPUTS.json"));
+    const json guide = json::parse(run("plan guide " + in("case.plan.json") + " -o " + in("guide.stl") +
+                                       " --blade 0.6 --voxel 0.5 --json --task " + in("saw.toml")));
+    REQUIRE(guide["slots"].size() == 6);
+    run("session " + in("saw.toml") + " --trainee P01 --offline --out " + in("training"));
+    const json score = json::parse(run("score " + in("training/P01/1/01-saw") + " --json"));
+    REQUIRE(score["cuts"].size() == 6);
+    for (const json& cut : score["cuts"]) {
+        INFO(cut.dump());
+        REQUIRE(cut["plane"]["rms_mm"].is_number());
+        CHECK(cut["plane"]["rms_mm"].get<double>() < 0.3);
+        CHECK(cut["plane"]["max_mm"].get<double>() < 1.0);
+        CHECK(cut["plane"]["angle_deg"].get<double>() < 2.0);
+    }
+}
