@@ -3,7 +3,9 @@
 
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/cutting_guide/guide_checks.hpp"
 #include "dsp/cutting_guide/guide_solid.hpp"
+#include "dsp/cutting_guide/thin_parts.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -24,7 +26,9 @@ namespace {
 constexpr double overlap = 2e-6;
 constexpr double ledge = 3e-3;  // m: what is free in front of a ledge
 constexpr double crumb = 8e-9;  // m³: smaller parts fall off and are removed
+constexpr double loose = 500e-9;  // m³: smaller parts may come off when thin ones are left out
 constexpr double max_samples = 150e6;
+constexpr int max_rounds = 3;  // of leaving out what is thin
 
 /// A cut in the frame of the guide.
 struct Slot {
@@ -74,8 +78,8 @@ public:
         GuideSolid solid(bone);
         add_parts(solid);
         add_cuts(solid, bone);
-        geometry::Contour contour = geometry::dual_contour(layout(), solid, crumb, run_);
-        if (contour.surface.triangles.empty()) throw Error("nothing is left of the guide: it does not reach the bone");
+        geometry::Contour contour = contour_of(solid);
+        keep_walls(contour.surface);
         made_.flipped = contour.flipped, made_.smoothed = contour.smoothed;
         for (Vec3& v : contour.surface.vertices) v = made_.frame.apply(v);
         made_.surface = std::move(contour.surface);
@@ -83,6 +87,63 @@ public:
     }
 
 private:
+    /// Without what is thinner than it may be.
+    geometry::Contour contour_of(GuideSolid& solid) {
+        const volume::Grid grid = layout();
+        const std::vector<Body> texts = text_bodies();
+        const double least = set_.min_thickness(), wanted = least - wall_slack;
+        double smallest = crumb;
+        for (int round = 0;; ++round) {
+            const std::size_t plain = solid.cuts.size();
+            solid.cuts.insert(solid.cuts.end(), texts.begin(), texts.end());
+            geometry::Contour contour = geometry::dual_contour(grid, solid, smallest, run_);
+            solid.cuts.resize(plain);
+            if (contour.surface.triangles.empty())
+                throw Error("nothing is left of the guide: it does not reach the bone");
+            const geometry::TriangleTree tree(contour.surface);
+            // Walls between letters are as thin as their strokes are near: they do not hold the guide together.
+            const double skin = rail_y_ - set_.rail + set_.text_depth + 0.05 * mm;
+            const std::vector<ThinWall> thin = thin_walls(
+                contour.surface, tree, wanted, [&](const Vec3& p) { return p.y > skin; }, run_);
+            if (thin.size() < wall_triangles || round == max_rounds) return contour;
+            if (round == 0) note_trimmed(thin);
+            solid.cuts.push_back(thin_parts(solid, tree, thin, least, std::max(set_.voxel, 0.4 * mm), run_));
+            smallest = loose;
+        }
+    }
+
+    void note_trimmed(const std::vector<ThinWall>& thin) {
+        std::string letters;
+        for (std::size_t n = 0; n < slots_.size(); ++n)
+            if (std::ranges::any_of(thin, [&](const ThinWall& w) { return near_slot(w.at) == n; }))
+                letters += fmt::format("{}{}", letters.empty() ? "" : ", ", design_.cuts[n].letter);
+        made_.notes.push_back(fmt::format("parts thinner than {:.1f} mm near slot {} are left out",
+                                          set_.min_thickness() / mm, letters));
+    }
+
+    /// The slot whose plane is nearest.
+    std::size_t near_slot(const Vec3& p) const {
+        return static_cast<std::size_t>(
+            std::ranges::min_element(slots_, {}, [&](const Slot& s) { return std::abs(s.out_of(p)); }) -
+            slots_.begin());
+    }
+
+    /// A slot of which too little is left beside the kept one becomes a ledge.
+    void keep_walls(const geometry::TriangleSurface& surface) {
+        geometry::TriangleSurface placed = surface;
+        for (Vec3& v : placed.vertices) v = made_.frame.apply(v);
+        for (MadeSlot& slot : made_.slots) {
+            if (slot.sides == Sides::one) continue;
+            const SlotFit fit = refit_slot(placed, slot);
+            if (fit.other_area >= min_wall_share * slot.area()) continue;
+            made_.notes.push_back(fmt::format(
+                "of the second wall of slot {} {:.0f} % are left, less than {:.0f} %: the blade is held on the kept side "
+                "only",
+                slot.cut.letter, 100.0 * fit.other_area / slot.area(), 100.0 * min_wall_share));
+            slot.sides = Sides::one, slot.play.reset();
+        }
+    }
+
     void make_frame() {
         const Vec3 z = glm::normalize(design_.removal);
         Vec3 x = design_.along - glm::dot(design_.along, z) * z;
@@ -356,7 +417,6 @@ private:
             note_slot(n);
         }
         for (const GuideHole& hole : design_.holes) add_hole(solid, bone, hole);
-        add_texts(solid);
     }
 
     /// Negative where the plane of `a`, moved out by `out`, has passed that of `b`, at any x. With the width of its slot:
@@ -467,12 +527,13 @@ private:
         made_.notes.push_back(fmt::format("{}: the guide does not surround it, and has no hole for it", hole.name));
     }
 
-    void add_texts(GuideSolid& solid) {
+    std::vector<Body> text_bodies() {
+        std::vector<Body> bodies;
         const std::array<double, 3> rows = text_rows(set_);
         const double face = rail_y_ - set_.rail;
         const auto engrave = [&](const GuideText& text, double x, double row) {
             if (text.outlines.empty()) return;
-            solid.cuts.push_back(
+            bodies.push_back(
                 {side(1, 1.0, face + set_.text_depth),
                  side(0, -1.0, x - 0.4 * mm),
                  side(0, 1.0, x + text.width + 0.4 * mm),
@@ -482,6 +543,7 @@ private:
         for (std::size_t n = 0; n < 2; ++n)
             engrave(design_.text[n], 0.5 * (rail_from_ + rail_to_ - design_.text[n].width), rows[2 * n]);
         for (std::size_t n = 0; n < design_.letters.size(); ++n) engrave(design_.letters[n], letter_x(n), rows[1]);
+        return bodies;
     }
 
     const GuideDesign& design_;

@@ -10,6 +10,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -44,9 +45,11 @@ struct GuideSettings {
     double text_height = 4e-3;  ///< of capitals; remembered, not from a seen source
     double text_depth = 1e-3;
     double voxel = 0.35e-3;  ///< of the grid from which the mesh is made; edges are sharp at any
-    double min_wall = 2e-3;  ///< a strip between two slots that is thinner is left out; remembered
+    double min_wall = 2e-3;  ///< what is thinner is left out; remembered
 
     double slot_width() const { return blade + 2.0 * clearance; }
+    /// m: no part of the guide may be thinner.
+    double min_thickness() const { return std::min({thickness, wall, rail - text_depth, min_wall}); }
 };
 
 struct GuideCut {
@@ -100,6 +103,7 @@ struct MadeSlot {
     Sides sides = Sides::three;
     Vec3 middle{0.0};  ///< on the plane, at half of its depth
     Vec3 deep{0.0}, wide{0.0};  ///< unit, in the plane: out of the bone, along the slot
+    double area() const { return depth * length; }  ///< m², of a wall
 };
 
 /// A text on the rail's face, which looks along -y of the guide's frame.
@@ -126,6 +130,11 @@ struct MadeGuide {
 /// planes through which no blade can come along the removal (more than 70° between them), for bone that stands in the
 /// way of the rail, for guides that need more than 150 million samples and numbers that cannot be.
 MadeGuide make_guide(const GuideDesign& design, const RunJobs& run);
+
+/// Measured walls may be thinner than they should be by this much, m.
+inline constexpr double wall_slack = 0.1e-3;
+/// Of a slot's wall, this share must be there: a placeholder.
+inline constexpr double min_wall_share = 0.5;
 
 /// Base lines of the rows of text on the rail, m from its top: the first text, letters, the second text.
 std::array<double, 3> text_rows(const GuideSettings& settings);

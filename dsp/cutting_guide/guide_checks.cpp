@@ -20,7 +20,6 @@ namespace {
 constexpr double opposite = -0.8660254037844386;  // cosine of 150°
 constexpr double path_length = 60.0 * mm, facing = 0.8, farthest_relief = 4.0 * mm, contact_margin = 0.1 * mm;
 constexpr int chunk = 2048, sample = 32;  // facets of a job; every which is sampled first
-constexpr std::size_t supporting = 6;  // facets of a wall; fewer are folds of the mesh at a corner
 
 /// A triangle as its middle, unit normal and area.
 struct Facet {
@@ -77,17 +76,17 @@ std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, 
             auto& thin = found[static_cast<std::size_t>(job)];
             of_job(job, [&](const Facet& f) {
                 if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
-                const auto wall = wall_at(tree, f, thin.size() < supporting ? widest : thin.back().thickness);
+                const auto wall = wall_at(tree, f, thin.size() < wall_triangles ? widest : thin.back().thickness);
                 if (!wall) return;
                 thin.insert(std::ranges::upper_bound(thin, wall->thickness, {}, &ThinWall::thickness), *wall);
-                if (thin.size() > supporting) thin.pop_back();
+                if (thin.size() > wall_triangles) thin.pop_back();
             });
         });
         std::vector<ThinWall> all;
         for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
-        if (all.size() < supporting) return std::optional<ThinWall>{};
-        std::ranges::nth_element(all, all.begin() + (supporting - 1), {}, &ThinWall::thickness);
-        return std::optional(all[supporting - 1]);
+        if (all.size() < wall_triangles) return std::optional<ThinWall>{};
+        std::ranges::nth_element(all, all.begin() + (wall_triangles - 1), {}, &ThinWall::thickness);
+        return std::optional(all[wall_triangles - 1]);
     };
     // A sample bounds the result, so that the balls of the other facets begin small.
     const auto sampled = thinnest((jobs_of(surface) + sample - 1) / sample, most, [&](int job, const auto& each) {
@@ -98,6 +97,20 @@ std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, 
     });
     const double widest = sampled ? std::min(most, 1.001 * sampled->thickness) : most;
     return thinnest(jobs_of(surface), widest, [&](int job, const auto& each) { each_of(surface, job, each); });
+}
+
+std::vector<ThinWall> thin_walls(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
+                                 double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run) {
+    std::vector<std::vector<ThinWall>> found(static_cast<std::size_t>(jobs_of(surface)));
+    run(jobs_of(surface), [&](int job) {
+        each_of(surface, job, [&](const Facet& f) {
+            if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
+            if (const auto wall = wall_at(tree, f, most)) found[static_cast<std::size_t>(job)].push_back(*wall);
+        });
+    });
+    std::vector<ThinWall> all;
+    for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
+    return all;
 }
 
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
@@ -205,8 +218,9 @@ SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slo
                     sum.m[static_cast<std::size_t>(3 * i + j)] += w * (p - sum.mean)[i] * (p - sum.mean)[j];
         return sum;
     };
-    const Sum wall = fit(kept);
+    const Sum wall = fit(kept), opposite_wall = fit(other);
     SlotFit found;
+    found.kept_area = 0.5 * wall.weight, found.other_area = 0.5 * opposite_wall.weight;
     if (kept.size() < 20) {
         found.offset = found.angle = infinity;  // the wall on the kept side is missing
         return found;
@@ -215,7 +229,7 @@ SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slo
     const Vec3 normal(eigen.vector[0][0], eigen.vector[0][1], eigen.vector[0][2]);
     found.offset = glm::dot(wall.mean - slot.cut.plane.origin, n);
     found.angle = std::asin(std::min(1.0, glm::length(glm::cross(normal, n))));
-    if (other.size() >= 20 && slot.sides != Sides::one) found.width = glm::dot(fit(other).mean - wall.mean, n);
+    if (other.size() >= 20 && slot.sides != Sides::one) found.width = glm::dot(opposite_wall.mean - wall.mean, n);
     return found;
 }
 

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace tactus::cutting_guide {
 
@@ -18,12 +19,19 @@ struct ThinWall {
     Vec3 at{0.0};            ///< the middle of the wall
 };
 
+/// A wall is measured by this many triangles at least: single ones are folds of the mesh at its corners.
+inline constexpr std::size_t wall_triangles = 6;
+
 /// Twice the radius of the smallest ball within the solid that touches it at two places whose normals differ by at least
 /// 150°: a ball at a corner touches faces that differ less. The balls shrink from `most` / 2 at the middle of each
-/// triangle for which `counts` is true (Ma, Bae, Choi 2012). At least six triangles must be so thin: single ones are folds
-/// of the mesh at its corners. `tree` is of `surface`.
+/// triangle for which `counts` is true (Ma, Bae, Choi 2012). `wall_triangles`
+/// must be so thin. `tree` is of `surface`.
 std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
                                       double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run);
+
+/// All of these balls that are below `most` wide, in the order of the triangles.
+std::vector<ThinWall> thin_walls(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
+                                 double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run);
 
 /// How a guide lies on its bone.
 struct Seat {
@@ -51,6 +59,7 @@ struct SlotFit {
     double offset = 0.0;  ///< m, of the wall on the kept side from the plan, out of the bone that is kept
     double angle = 0.0;  ///< rad, between them
     double width = 0.0;  ///< m, between the walls; 0 without a second one
+    double kept_area = 0.0, other_area = 0.0;  ///< m², of the wall on the kept side, and of the one opposite
 };
 
 /// Planes through the middles of the triangles of each wall, by least squares with their areas; infinite offset and angle

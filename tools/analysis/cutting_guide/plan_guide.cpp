@@ -31,7 +31,6 @@ using cutting_guide::GuideDesign;
 using cutting_guide::GuideHole;
 using cutting_guide::GuideText;
 
-constexpr double wall_slack = 0.1 * mm;  // of measured walls against wanted ones
 constexpr double jaw_cover = 0.65;  // of the height of the jaw: a placeholder
 constexpr double max_label = 16;        // characters
 
@@ -317,7 +316,7 @@ void refuse_guide(const PlannedGuide& guide) {
     if (guide.intersections > 0)
         throw Error(fmt::format("the guide's mesh intersects itself in {} places", guide.intersections));
     const cutting_guide::GuideSettings& set = guide.design.settings;
-    const double wanted = std::min({set.thickness, set.wall, set.rail - set.text_depth, set.min_wall}) - wall_slack;
+    const double wanted = set.min_thickness() - cutting_guide::wall_slack;
     if (guide.wall && guide.wall->thickness < wanted) {
         const Vec3 at = guide.wall->at / mm;
         throw Error(
