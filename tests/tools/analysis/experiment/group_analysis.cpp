@@ -429,7 +429,7 @@ ExperimentAnalysis analysis_of_trials(const fs::path& out, const char* experimen
             trial.condition = condition.name;
             trial.interval = 1;
             trial.is_simulated = true;
-            for (int i = 0; i < 40; ++i) {
+            for (int i = 0; i < 200; ++i) {
                 trial.number = static_cast<int>(trials.size()) + 1;
                 trial.folder = fmt::format("trial-{:04}", trial.number);
                 if (make(protocol, i, trial)) trials.push_back(trial);
@@ -475,7 +475,7 @@ TEST_CASE("matches and thresholds at an end of the range are not identified, wit
             scratch.path() / name, name, [](const experiment::Protocol& protocol, int i, TrialRecord& trial) {
                 trial.level = protocol.stimulus->max * (i % 4 == 0 ? 0.8 : 1.0);
                 trial.is_correct = i % 5 < 3;  // 60 %: below the target, above chance
-                return true;
+                return i < 40;
             });
         for (const SubjectThreshold& one : beyond.subjects.front().thresholds) {
             CAPTURE(one.condition, one.problem);
@@ -486,7 +486,7 @@ TEST_CASE("matches and thresholds at an end of the range are not identified, wit
     }
 }
 
-TEST_CASE("a threshold beyond the range of its stimulus is not reported as one, by any method") {
+TEST_CASE("a threshold that answers place beyond the range of its stimulus is not reported as one") {
     const run::ScratchFolder scratch;
     // 70 % correct at the greatest level and chance at a third of it: the level with 75 or 79 % lies above.
     for (const char* name : {"vibration", "stiffness"}) {
@@ -498,7 +498,10 @@ TEST_CASE("a threshold beyond the range of its stimulus is not reported as one, 
             });
         const SubjectThreshold& one = beyond.subjects.front().thresholds.front();
         CAPTURE(name, one.problem);
+        REQUIRE(one.fit);
+        CHECK(one.fit->is_identified);
         CHECK_FALSE(one.threshold);
+        CHECK(one.problem == "the answers place it at or beyond an end of the range");
     }
 }
 
