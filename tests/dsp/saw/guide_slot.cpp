@@ -700,8 +700,10 @@ TEST_CASE("a wedged blade that is released while the hand moves loses its force 
             const SlotPath path{Random{37}, run};
             saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
             constexpr int ticks = 2000;
-            double work = 0.0, bound = 0.0, jump = 0.0, most = 0.0;
-            Wrench felt;
+            double work = 0.0, bound = 0.0, jump = 0.0, most = 0.0, dropped = 0.0;
+            saw::SlotHold still;  // as if it were not released
+            int since = 0;
+            Wrench felt, released_at;
             Pose last = path(0.0);
             for (int n = 0; n <= ticks; ++n) {
                 const double s = static_cast<double>(n) / ticks;
@@ -717,6 +719,13 @@ TEST_CASE("a wedged blade that is released while the hand moves loses its force 
                 bound += 0.5 * (std::abs(glm::dot(now.force - felt.force, way)) +
                                 std::abs(glm::dot(now.torque - felt.torque, turn)));
                 if (is_released) most = std::max(most, glm::length(now.force));
+                if (is_released && since == 0) still = before, released_at = felt;
+                if (is_released && ++since <= 3) {
+                    still.follow(slots, hand, 1e-3);
+                    const double least =
+                        std::min(glm::length(still.on_hand({}).force), glm::length(released_at.force));
+                    if (still.slot() == 0) dropped = std::max(dropped, 0.9 * least - glm::length(now.force));
+                }
                 // The same motion in 16 ticks of a 16th: what is no step becomes small, but for the fade.
                 if (is_released && glm::length(now.force - felt.force) > 0.02 * glm::length(felt.force) + 0.2) {
                     saw::SlotHold fine = before;
@@ -734,6 +743,7 @@ TEST_CASE("a wedged blade that is released while the hand moves loses its force 
             }
             CAPTURE(run, at, most, work * 1e3, bound * 1e3);
             CHECK(jump < 0.02 * most + 0.1);
+            CHECK(dropped < 0.1);
             CHECK(work <= 1.02 * bound + 1e-6);
             CHECK(glm::length(felt.force) == 0.0);
         }
