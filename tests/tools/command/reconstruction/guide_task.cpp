@@ -135,8 +135,8 @@ TEST_CASE("every cut of the tutorial's guide is sawn on plan", "[long]") {
     for (const json& cut : score["cuts"]) {
         INFO(cut.dump());
         REQUIRE(cut["plane"]["rms_mm"].is_number());
-        CHECK(cut["plane"]["rms_mm"].get<double>() < 0.3);
-        CHECK(cut["plane"]["max_mm"].get<double>() < 1.0);
-        CHECK(cut["plane"]["angle_deg"].get<double>() < 2.0);
+        CHECK(cut["plane"]["rms_mm"].get<double>() < 0.05);
+        CHECK(cut["plane"]["max_mm"].get<double>() < 0.1);
+        CHECK(cut["plane"]["angle_deg"].get<double>() < 0.2);
     }
 }
