@@ -18,7 +18,7 @@ namespace {
 
 constexpr double entry = 0.3e-3;  // m by which a blade may miss the slot that it enters; it keeps that room
 constexpr double ledge_reach = 3e-3;  // m from a ledge within which it holds a blade
-constexpr double preference = 0.1e-3;  // m by which a blade must fit another slot better than the one that it is free in
+constexpr double preference = 0.1e-3;  // m by which a free blade must fit another slot better
 constexpr double wrong = 0.5e-3;  // m by which it must fit another ledge better than one that it touches
 constexpr double max_gap = 5e-3;  // m from its slot at which a blade is released
 constexpr double rounding = 1e-13;  // m: in a wedge of 50 N a touch that is off by so much changes the load by 0.04 N
@@ -201,7 +201,8 @@ void SlotHold::stay(std::span<const GuideSlot> slots, const Pose& hand) noexcept
     if (is_given) walls_ = slots[n];
     hand_ = placed(walls_.frame, hand);
     const bool has_plane = is_placed(hand_.pose);
-    const double missed = has_plane ? miss(walls_, hand_) : infinity, away = has_plane ? gap(walls_, as_held(hand_)) : infinity;
+    const double missed = has_plane ? miss(walls_, hand_) : infinity,
+                 away = has_plane ? gap(walls_, as_held(hand_)) : infinity;
     const bool is_free = is_clear(missed);
     if (!is_given || !is_upright(hand_.pose) || away >= max_gap || (away > 0.0 && is_free) ||
         apart(walls_, hand_) > ledge_reach || (!is_free && is_wrong(slots, hand))) {
@@ -400,7 +401,8 @@ void SlotHold::put() noexcept {
     guided_.orientation = glm::normalize(guided_.orientation);
 }
 
-/// Forces on the slopes and the heading of a plane, N as of (a · lever, b · lever) and N·m, to the torque that does the same work.
+/// Forces on the slopes and the heading of a plane, N as of (a · lever, b · lever) and N·m, to the torque that does the
+/// same work.
 Vec3 SlotHold::torque_of(const Vec3& general, const Pose& local) const noexcept {
     return slope_axes(local) * (general * Vec3(settings_.lever, settings_.lever, 1.0));
 }
@@ -482,7 +484,8 @@ Wrench SlotHold::on_hand(const Wrench& on_blade) const noexcept {
         const Vec3 step(along[0], along[1] / settings_.lever, along[2] / settings_.lever);
         Solution near;
         near.touches = touches_, near.count = touch_count_;
-        const Solution less = project(walls_, hand_.plane - step, near), more = project(walls_, hand_.plane + step, near);
+        const Solution less = project(walls_, hand_.plane - step, near),
+                       more = project(walls_, hand_.plane + step, near);
         const double carried = share_ * size / taken_over;
         general += (more.offset - less.offset) * carried;
         const auto pushed = [&](const Solution& at, const Vec3& plane) {

@@ -496,7 +496,8 @@ TEST_CASE("a constant load on a held blade does no work on a hand that returns t
                 const double part = glm::dot(mean.force, hand.position - last.position) +
                                     glm::dot(mean.torque, rotation_between(last.orientation, hand.orientation));
                 // A constant torque does work on a blade that turns about several axes.
-                const double on_blade = glm::dot(load.torque, rotation_between(blade.orientation, hold.pose().orientation));
+                const double on_blade =
+                    glm::dot(load.torque, rotation_between(blade.orientation, hold.pose().orientation));
                 work += part - (axis < 3 ? 0.0 : on_blade);
                 exchanged += std::abs(part);
                 felt = now;
