@@ -53,7 +53,8 @@ void check(const GuideSettings& s) {
     positive(s.thickness, "thickness"), positive(s.blade, "thickness of the blade"), positive(s.depth, "depth of slot");
     positive(s.wall, "thickness of walls"), positive(s.voxel, "voxel"), positive(s.rail, "thickness of its rail");
     if (!(s.offset > 0.0)) throw Error("a guide needs an offset above 0 from the bone: without it, it does not seat");
-    if (!(s.clearance >= 0.0)) throw Error("a slot cannot be narrower than its blade: the clearance is below 0");
+    if (!(s.clearance > 0.0))
+        throw Error("a slot needs a clearance above 0 on either side of its blade: without it, the blade jams");
     if (!(s.wrap > 0.1 && s.wrap < 6.0)) throw Error("a guide wraps the bone by 6 to 340 degrees");
     if (!(s.text_depth < s.rail)) throw Error("the text is as deep as the rail is thick");
 }

@@ -31,6 +31,7 @@ using cutting_guide::GuideDesign;
 using cutting_guide::GuideHole;
 using cutting_guide::GuideText;
 
+constexpr double mesh_slack = 0.05 * mm;  // a mesh that is nearer to a vessel touches it
 constexpr double jaw_cover = 0.65;  // of the height of the jaw: a placeholder
 constexpr double max_label = 16;        // characters
 
@@ -224,13 +225,62 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
     return design;
 }
 
-double smallest_distance(const cutting_guide::MadeGuide& made, const Vec3& p) {
-    double least = infinity;
-    for (const Vec3& v : made.surface.vertices) least = std::min(least, glm::dot(v - p, v - p));
-    return std::sqrt(least);
+/// Vessels and perforators of the flap that come near enough to be named.
+std::vector<NearVessel> vessels_near(const PlannedGuide& guide, const geometry::TriangleTree& tree,
+                                     const reconstruction::Flap& flap, const GuideChoice& choice) {
+    constexpr double step = 0.25 * mm, reach = 10.0 * mm;
+    std::vector<NearVessel> found;
+    for (const reconstruction::FlapVessel& vessel : flap.vessels) {
+        NearVessel near{fmt::format("vessel '{}'", vessel.name), choice.vessel};
+        for (std::size_t n = 0; n + 1 < vessel.points.size(); ++n) {
+            const Vec3 along = vessel.points[n + 1] - vessel.points[n];
+            const int steps = 1 + static_cast<int>(glm::length(along) / step);
+            for (int k = 0; k <= steps; ++k) {
+                const Vec3 p = vessel.points[n] + static_cast<double>(k) / steps * along;
+                const double away = tree.nearest(p, near.away + vessel.radius).distance - vessel.radius;
+                if (away < near.away) near.away = away, near.at = p;
+            }
+        }
+        if (near.away < choice.vessel) found.push_back(std::move(near));
+    }
+    const cutting_guide::BaseSpan& line = guide.design.base.front();
+    for (const reconstruction::Perforator& p : flap.perforators) {
+        NearVessel near{fmt::format("perforator '{}'", p.name),
+                        tree.nearest(p.at, choice.perforator + choice.perforator_radius).distance -
+                            choice.perforator_radius,
+                        p.at, true};
+        Vec3 out = p.at - line.point;
+        out -= glm::dot(out, line.axis) * line.axis;
+        if (glm::length(out) > 0.0)
+            near.is_covered = tree.sweep(p.at, reach * glm::normalize(out), choice.perforator_radius) < 1.0;
+        if (near.is_covered || near.away < choice.perforator) found.push_back(std::move(near));
+    }
+    return found;
 }
 
-void warn_clinically(PlannedGuide& guide, const FlapStudy& study, const GuideChoice& choice) {
+/// m from a hole's rim to a cut, if the hole is beside it.
+std::optional<double> hole_to_cut(const GuideHole& hole, const GuideCut& cut) {
+    if (glm::length(hole.at - cut.plane.origin) > 30.0 * mm) return {};
+    return std::abs(glm::dot(hole.at - cut.plane.origin, cut.plane.normal)) - hole.radius;
+}
+
+/// "near slot C": the one whose walls are nearest.
+std::string near_slot(const PlannedGuide& guide, const Vec3& p) {
+    const auto away = [&](const cutting_guide::MadeSlot& s) {
+        const Vec3 r = p - s.middle;
+        const auto beyond = [](double value, double half) { return std::max(0.0, std::abs(value) - half); };
+        return glm::length(Vec3(glm::dot(r, s.cut.plane.normal), beyond(glm::dot(r, s.deep), 0.5 * s.depth),
+                                beyond(glm::dot(r, s.wide), 0.5 * s.length)));
+    };
+    const auto nearest = std::ranges::min_element(guide.made.slots, {}, away);
+    return fmt::format("near slot {} ({})", nearest->cut.letter, nearest->cut.name);
+}
+
+std::string place_of(const Vec3& p) {
+    return fmt::format("{:.1f}, {:.1f}, {:.1f} mm", p.x / mm, p.y / mm, p.z / mm);
+}
+
+void warn_clinically(PlannedGuide& guide, const GuideChoice& choice) {
     const auto warn = [&](const char* code, std::string text) { guide.warnings.push_back({code, std::move(text)}); };
     const cutting_guide::Seat& seat = guide.seat;
     if (seat.play > 1.0 * mm)
@@ -258,23 +308,13 @@ void warn_clinically(PlannedGuide& guide, const FlapStudy& study, const GuideCho
                          "with the bone's side up",
                          100.0 * guide.overhang, choice.overhang / degree));
     for (const GuideHole& hole : guide.made.holes)
-        for (const GuideCut& cut : guide.design.cuts) {
-            const double away = std::abs(glm::dot(hole.at - cut.plane.origin, cut.plane.normal)) - hole.radius;
-            const bool is_near = glm::length(hole.at - cut.plane.origin) < 30.0 * mm;
-            if (is_near && away < 1.0 * mm)
-                warn("hole-near-cut", fmt::format("{} lies {:.1f} mm from cut {}", hole.name, away / mm, cut.letter));
-        }
-    if (guide.bone != GuideBone::fibula) return;
-    for (const reconstruction::Perforator& p : study.flap().perforators)
-        if (const double away = smallest_distance(guide.made, p.at); away < choice.perforator)
-            warn("perforator",
-                 fmt::format("perforator '{}' leaves the bone {:.1f} mm from the guide", p.name, away / mm));
-    for (const reconstruction::FlapVessel& vessel : study.flap().vessels) {
-        double least = infinity;
-        for (const Vec3& p : vessel.points) least = std::min(least, smallest_distance(guide.made, p) - vessel.radius);
-        if (least < choice.vessel)
-            warn("vessel", fmt::format("vessel '{}' runs {:.1f} mm from the guide", vessel.name, least / mm));
-    }
+        for (const GuideCut& cut : guide.design.cuts)
+            if (const auto away = hole_to_cut(hole, cut); away && *away < 1.0 * mm)
+                warn("hole-near-cut", fmt::format("{} lies {:.1f} mm from cut {}", hole.name, *away / mm, cut.letter));
+    for (const NearVessel& v : guide.vessels)
+        warn(v.is_perforator ? "perforator" : "vessel",
+             fmt::format("{} runs {:.1f} mm from the guide, less than {:.1f} mm (a placeholder)", v.name, v.away / mm,
+                         (v.is_perforator ? choice.perforator : choice.vessel) / mm));
 }
 
 }  // namespace
@@ -310,33 +350,58 @@ void refuse_guide(const PlannedGuide& guide) {
                                 topology.boundary_edges, topology.non_manifold_edges, topology.flipped_edges));
     if (!(guide.volume > 0.0)) throw Error("the guide's mesh is inside out");
     if (topology.components != 1)
-        throw Error(
-            fmt::format("the guide falls into {} parts: choose another approach, a thicker base, or three sides",
-                        topology.components));
+        throw Error(fmt::format("the guide falls into {} parts: another approach (--turn), a wider base (--wrap), "
+                                "three sides (--sides 3) or one guide per cut of a jaw (--cut) may join them",
+                                topology.components));
     if (guide.intersections > 0)
         throw Error(fmt::format("the guide's mesh intersects itself in {} places", guide.intersections));
     const cutting_guide::GuideSettings& set = guide.design.settings;
     const double wanted = set.min_thickness() - cutting_guide::wall_slack;
     if (guide.wall && guide.wall->thickness < wanted) {
-        const Vec3 at = guide.wall->at / mm;
-        throw Error(
-            fmt::format("a wall of the guide is {:.2f} mm thick, less than {:.1f} mm, at {:.1f}, {:.1f}, {:.1f} mm",
-                        guide.wall->thickness / mm, wanted / mm, at.x, at.y, at.z));
+        throw Error(fmt::format(
+            "a wall {} is {:.2f} mm thick, less than {:.1f} mm (the thinnest part to print, {:.1f} mm, a placeholder, "
+            "less {:.1f} mm), at {}: more space between the segments ('between_space_mm' of the inputs), a narrower slot "
+            "(--blade, --clearance), three sides (--sides 3) or another approach (--turn) may leave more of it",
+            near_slot(guide, guide.wall->at), guide.wall->thickness / mm, wanted / mm, set.min_thickness() / mm,
+            cutting_guide::wall_slack / mm, place_of(guide.wall->at)));
     }
     if (!guide.seat.is_path_free) {
-        const Vec3 at = guide.seat.blocked_at / mm;
-        throw Error(fmt::format("bone is in the way of the guide along its approach, at {:.1f}, {:.1f}, {:.1f} mm",
-                                at.x, at.y, at.z));
+        throw Error(fmt::format("bone is in the way of the guide along its approach {}, at {}: turn it (--turn)",
+                                near_slot(guide, guide.seat.blocked_at), place_of(guide.seat.blocked_at)));
     }
     if (guide.seat.min_distance < set.offset - 0.1 * mm)
-        throw Error(fmt::format("the guide comes within {:.2f} mm of the bone, closer than its offset",
-                                guide.seat.min_distance / mm));
-    if (!(guide.seat.contact_area > 0.0)) throw Error("the guide does not touch the bone");
+        throw Error(fmt::format("the guide comes within {:.2f} mm of the bone, closer than its offset of {:.2f} mm: a "
+                                "finer grid (--voxel) may mend that",
+                                guide.seat.min_distance / mm, set.offset / mm));
+    if (!(guide.seat.contact_area > 0.0))
+        throw Error("the guide does not touch the bone: choose another approach (--turn) or a wider base (--wrap)");
+    for (const NearVessel& v : guide.vessels) {
+        if (v.away >= mesh_slack && !v.is_covered) continue;
+        throw Error(fmt::format(
+            "the guide {} {}, at {}: another approach (--turn), a narrower base (--wrap) or segments from another part "
+            "of the bone avoid it",
+            v.is_covered ? "covers the place where the bone is left by"
+                         : fmt::format("overlaps, by {:.2f} mm,", std::max(0.0, -v.away) / mm),
+            v.name, place_of(v.at)));
+    }
+    for (const GuideHole& hole : guide.made.holes)
+        for (const GuideCut& cut : guide.design.cuts)
+            if (const auto away = hole_to_cut(hole, cut); away && *away < 0.0)
+                throw Error(fmt::format("{} meets cut {} ({}): move it in the plan, or give a smaller --screw",
+                                        hole.name, cut.letter, cut.name));
     for (std::size_t n = 0; n < guide.refits.size(); ++n) {
         const cutting_guide::SlotFit& fit = guide.refits[n];
         if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
-            throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan", guide.made.slots[n].cut.letter,
-                                    fit.offset / mm, fit.angle / degree));
+            throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan, more than 0.05 mm or 0.1°: a finer "
+                                    "grid (--voxel) or another approach (--turn) may mend that",
+                                    guide.made.slots[n].cut.letter, fit.offset / mm, fit.angle / degree));
+        const cutting_guide::MadeSlot& slot = guide.made.slots[n];
+        if (const double share = fit.kept_area / slot.area(); share < cutting_guide::min_wall_share)
+            throw Error(fmt::format(
+                "of the wall of slot {} ({}) that lies on plan, {:.0f} % are left beside its neighbour, less than "
+                "{:.0f} % (a placeholder): more space between the segments ('between_space_mm' of the inputs), a lower "
+                "slot (--depth), or another approach (--turn) leaves more",
+                slot.cut.letter, slot.cut.name, 100.0 * share, 100.0 * cutting_guide::min_wall_share));
         if (guide.made.slots[n].sides != cutting_guide::Sides::one && !(fit.width > 0.0))
             throw Error(fmt::format("slot {} lacks its second wall", guide.made.slots[n].cut.letter));
         if (fit.width > 0.0 && std::abs(fit.width - guide.made.slots[n].width) > 0.05 * mm)
@@ -349,6 +414,7 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
     const RunJobs run = on_threads();
     PlannedGuide guide;
     guide.bone = choice.bone;
+    guide.kerf = study.inputs().kerf;
     guide.design = design_guide(study, title, choice);
     guide.made = cutting_guide::make_guide(guide.design, run);
     const geometry::TriangleSurface& surface = guide.made.surface;
@@ -368,6 +434,7 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
     guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.overhang);
     for (const cutting_guide::MadeSlot& slot : guide.made.slots)
         guide.refits.push_back(cutting_guide::refit_slot(surface, slot));
+    if (guide.bone == GuideBone::fibula) guide.vessels = vessels_near(guide, tree, study.flap(), choice);
     return guide;
 }
 
@@ -375,7 +442,7 @@ PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const 
     PlannedGuide guide = measured_guide(study, title, choice);
     refuse_guide(guide);
     for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
-    warn_clinically(guide, study, choice);
+    warn_clinically(guide, choice);
     const reconstruction::FibulaPlan placed = study.placed_plan();
     for (std::size_t n = 0; n < placed.segments.size(); ++n) {
         const Pose &now = placed.segments[n].donor_to_target, &planned = study.fibula().segments[n].donor_to_target;

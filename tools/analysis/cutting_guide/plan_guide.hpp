@@ -27,12 +27,22 @@ struct GuideChoice {
     double seat_gap = 0.3e-3;  ///< m, for Seat::play
     double overhang = 0.7853981634;  ///< rad: printers hold walls that lean less
     double perforator = 3.0e-3;  ///< m: nearer perforators warn; a placeholder
+    double perforator_radius = 0.3e-3;  ///< m (Heitmann 2003)
     double vessel = 3.0e-3;  ///< m; a placeholder
 };
 
 struct GuideWarning {
     std::string code;  ///< "seat-play", "perforator", ...
     std::string text;
+};
+
+/// A vessel or a perforator of the flap, as near as it comes to the guide.
+struct NearVessel {
+    std::string name;  ///< "vessel 'artery'"
+    double away = 0.0;  ///< m, between its wall and the guide; below 0: they overlap
+    Vec3 at{0.0};  ///< m, frame of the donor
+    bool is_perforator = false;
+    bool is_covered = false;  ///< a perforator that runs into the guide where it leaves the bone
 };
 
 struct PlannedGuide {
@@ -46,6 +56,8 @@ struct PlannedGuide {
     cutting_guide::Seat seat;
     double overhang = 0.0;  ///< share of the area
     std::vector<cutting_guide::SlotFit> refits;  ///< of each slot, from the mesh
+    std::vector<NearVessel> vessels;  ///< of the donor
+    double kerf = 0.0;  ///< m, of the plan
     std::vector<GuideWarning> warnings;
 };
 
@@ -56,7 +68,8 @@ cutting_guide::GuideDesign design_guide(const FlapStudy& study, const std::strin
 PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
 
 /// Throws Error for a mesh that is not closed, wound or one part, that intersects itself, has a wall thinner than it
-/// should, a slot off the plan, or cannot be seated: such a guide must not be printed.
+/// should, a slot off the plan, or cannot be seated, and for one that overlaps a vessel, a perforator or a cut with a hole:
+/// such a guide must not be printed. The text names the slot, the value, the limit with its source, and what helps.
 void refuse_guide(const PlannedGuide& guide);
 
 /// Both. Clinical thresholds only warn.

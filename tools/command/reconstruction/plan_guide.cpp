@@ -98,7 +98,7 @@ Action declare_plan_guide(VerbOptions& verb) {
     verb.add("--printer", o->printer, "which clearance: 0.25 mm per side of the blade for sla, 0.4 mm for fdm")
         .one_of({"sla", "fdm"})
         .shows_default();
-    verb.add("--clearance", o->clearance, "mm per side of the blade, instead of the printer's").range(0.0, 2.0);
+    verb.add("--clearance", o->clearance, "mm per side of the blade, instead of the printer's").range(0.02, 2.0);
     verb.add("--offset", o->offset, "mm between base and bone (default: 0.5 over a fibula's periosteum, jaw 0.3)")
         .range(0.05, 3.0);
     verb.add("--thickness", o->thickness, "mm of the base").range(1.0, 10.0).shows_default();

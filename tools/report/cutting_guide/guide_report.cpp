@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -154,11 +155,32 @@ const Fields<SourcedValue>& sourced_fields() {
 std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
     const cutting_guide::GuideSettings& set = g.design.settings;
     const auto in_mm = [](double metres) { return fmt::format("{:.2f} mm", metres / mm); };
-    return {{"distance from the bone", in_mm(set.offset), "0.3 mm BoneReconstructionPlanner; 0.5 mm over periosteum"},
-            {"thickness of the base", in_mm(set.thickness), "BoneReconstructionPlanner"},
-            {"covers of the outline", fmt::format("{:.0f}°", set.wrap / degree), "BoneReconstructionPlanner"},
-            {"blade", in_mm(set.blade), "the plan's kerf, a placeholder"},
-            {"clearance per side of the blade", in_mm(set.clearance), "0.25 mm SLA, 0.4 mm FDM"}};
+    const cutting_guide::GuideSettings usual;
+    const reconstruction::FibulaInputs inputs;
+    // A value has the source of the default that it equals; any other was given.
+    const auto is = [](double value, double other) { return std::abs(value - other) < 1e-9; };
+    const auto from = [&](double value, double other, const char* source) {
+        return std::string(is(value, other) ? source : "given");
+    };
+    const char *planner = "BoneReconstructionPlanner", *placeholder = "a placeholder";
+    const bool on_fibula = g.bone == analysis::GuideBone::fibula;
+    return {
+        {"distance from the bone", in_mm(set.offset),
+         from(set.offset, (on_fibula ? 0.5 : 0.3) * mm, on_fibula ? "for periosteum, remembered" : planner)},
+        {"thickness of the base", in_mm(set.thickness), from(set.thickness, usual.thickness, planner)},
+        {"covers of the outline", fmt::format("{:.0f}°", set.wrap / degree), from(set.wrap, usual.wrap, planner)},
+        {"depth of a slot", in_mm(set.depth), from(set.depth, usual.depth, planner)},
+        {"wall of a slot", in_mm(set.wall), from(set.wall, usual.wall, planner)},
+        {"blade", in_mm(set.blade),
+         !is(set.blade, g.kerf)         ? "given"
+         : is(g.kerf, inputs.kerf)      ? "the plan's kerf, a placeholder"
+                                        : "the plan's kerf"},
+        {"clearance per side of the blade", in_mm(set.clearance),
+         is(set.clearance, usual.clearance) ? "of a printer by light (sla)"
+                                            : from(set.clearance, 0.4 * mm, "of a printer by filament (fdm)")},
+        {"hole of a screw", in_mm(2.0 * set.screw_radius), from(set.screw_radius, usual.screw_radius, planner)},
+        {"thinnest part", in_mm(set.min_thickness()), from(set.min_thickness(), usual.min_wall, placeholder)},
+    };
 }
 
 const Fields<analysis::PlannedGuide>& planned_fields() {
@@ -183,7 +205,7 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
             .integer("parts", "parts", [](const G& g) { return g.topology.components; })
             .integer("triangles", "triangles", [](const G& g) { return g.made.surface.triangles.size(); })
             .number("volume_mm3", "volume", from_si(0, "mm³"), &G::volume)
-            .number("wall_min_mm", "thinnest wall (wanted 2 mm, remembered)", from_si(2, "mm"),
+            .number("wall_min_mm", "thinnest wall", from_si(2, "mm"),
                     [](const G& g) { return g.wall ? std::optional(g.wall->thickness) : std::nullopt; })
             .text("", "thinnest wall", [](const G& g) { return std::string(g.wall ? "" : "above 6 mm"); })
             .child("seating", "", seating_fields(), [](const G& g) -> const G& { return g; })
