@@ -192,6 +192,7 @@ SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slo
         Vec3 mean{0.0};
         std::array<double, 9> m{};
     };
+    constexpr double flat = 0.99;  // cosine of 8°: triangles that lean more belong to the edge of a wall
     const Vec3 n = slot.cut.plane.normal;
     std::vector<std::pair<Vec3, double>> kept, other;
     for (const auto& t : surface.triangles) {
@@ -204,8 +205,8 @@ SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slo
         if (std::abs(glm::dot(from, slot.deep)) > 0.55 * slot.depth ||
             std::abs(glm::dot(from, slot.wide)) > 0.6 * slot.length)
             continue;
-        if (std::abs(out) < 0.3 * slot.width && glm::dot(normal, n) > 0.9) kept.emplace_back(middle, area);
-        if (std::abs(out - slot.width) < 0.3 * slot.width && glm::dot(normal, n) < -0.9)
+        if (std::abs(out) < 0.3 * slot.width && glm::dot(normal, n) > flat) kept.emplace_back(middle, area);
+        if (std::abs(out - slot.width) < 0.3 * slot.width && glm::dot(normal, n) < -flat)
             other.emplace_back(middle, area);
     }
     const auto fit = [](const std::vector<std::pair<Vec3, double>>& points) {

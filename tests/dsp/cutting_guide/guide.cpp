@@ -84,6 +84,29 @@ TEST_CASE("where the planes of two facing cuts cross in the guide, either blade 
     }
 }
 
+// Costly: guides with cuts as close as those between two segments, each meshed several times.
+TEST_CASE("a guide with close cuts has no part too thin to print", "[slow]") {
+    const unsigned seed = GENERATE(100u, 103u);
+    GuideDesign design = test::random_guide(seed, 2);
+    design.settings.sides = Sides::one;
+    const GuideCut first = design.cuts[1];
+    design.cuts[2].plane.origin = first.plane.origin + 4.0 * mm * design.along;
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::flaws_of(made.surface) == "none");
+    CHECK(test::parts_of(made.surface) == 1);
+    const geometry::TriangleTree tree(made.surface);
+    const auto wall = thinnest_wall(made.surface, tree, 6.0 * mm, [](const Vec3&) { return true; }, run_in_turn);
+    INFO("seed " << seed);
+    CHECK((!wall || wall->thickness > design.settings.min_thickness() - wall_slack));
+    for (const MadeSlot& slot : made.slots) {
+        const SlotFit fit = refit_slot(made.surface, slot);
+        INFO("slot " << slot.cut.letter);
+        CHECK(std::abs(fit.offset) < 0.05 * mm);
+        CHECK(fit.angle < 0.1 * degree);
+        CHECK(fit.kept_area > min_wall_share * slot.area());
+    }
+}
+
 TEST_CASE("letters of a guide are read back from its rail", "[slow]") {
     GuideDesign design = test::random_guide(5, 1);
     design.settings.voxel = 0.35 * mm;
@@ -199,6 +222,9 @@ TEST_CASE("a guide that cannot be made is refused with the reason") {
     design = test::random_guide(9, 1);
     design.settings.offset = 0.0;
     CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("does not seat"));
+    design = test::random_guide(9, 1);
+    design.settings.clearance = 0.0;
+    CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("the blade jams"));
     design = test::random_guide(9, 1);
     design.cuts[0].plane.origin += design.along * 1.0;
     CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("does not meet the bone"));

@@ -158,7 +158,7 @@ std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
     const cutting_guide::GuideSettings usual;
     const reconstruction::FibulaInputs inputs;
     // A value has the source of the default that it equals; any other was given.
-    const auto is = [](double value, double other) { return std::abs(value - other) < 1e-9; };
+    const auto is = [](double value, double other) { return std::abs(value - other) < 1e-6 * other; };
     const auto from = [&](double value, double other, const char* source) {
         return std::string(is(value, other) ? source : "given");
     };

@@ -100,3 +100,25 @@ TEST_CASE("a guide that must not be printed is refused and leaves nothing behind
         made.folder.tactus("plan guide " + made.plan + " -o " + (made.folder.path / "fibula.stl").string());
     CHECK(over.code == 2);
 }
+
+// Costly: a case is written, planned and two guides are made of it.
+TEST_CASE("a guide through a vessel is refused, and one with close slots is made", "[slow]") {
+    const test::Folder folder;
+    const auto file = [&](const char* name) { return (folder.path / name).string(); };
+    REQUIRE(folder.tactus("flap -o " + file("flap")).code == 0);
+    REQUIRE(folder.tactus("plan reconstruct " + file("case.plan.json") + " " + file("flap/INPUTS.json")).code == 0);
+    const auto guide = [&](const std::string& more) {
+        return folder.tactus("plan guide " + file("case.plan.json") + " -o " + file("guide.stl") + " --voxel 0.5 " + more);
+    };
+    const test::Outcome through = guide("--turn -60");
+    CHECK(through.code == 2);
+    CHECK_THAT(through.err, ContainsSubstring("overlaps"));
+    CHECK_THAT(through.err, ContainsSubstring("vessel 'artery'"));
+    CHECK(!std::filesystem::exists(file("guide.stl")));
+    const test::Outcome made = guide("--printer fdm --blade 0.6 --depth 14");
+    INFO(made.err);
+    REQUIRE(made.code == 0);
+    CHECK_THAT(made.out, ContainsSubstring("are left out"));
+    CHECK_THAT(made.out, Catch::Matchers::Matches("(.|\n)*depth of a slot +14.00 mm +given(.|\n)*"));
+    CHECK_THAT(made.out, Catch::Matchers::Matches("(.|\n)*wall of a slot +3.00 mm +BoneReconstructionPlanner(.|\n)*"));
+}
