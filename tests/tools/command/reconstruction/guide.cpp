@@ -115,10 +115,10 @@ TEST_CASE("a guide through a vessel is refused, and one with close slots is made
     CHECK_THAT(through.err, ContainsSubstring("overlaps"));
     CHECK_THAT(through.err, ContainsSubstring("vessel 'artery'"));
     CHECK(!std::filesystem::exists(file("guide.stl")));
-    const test::Outcome made = guide("--printer fdm --blade 0.6 --depth 14");
+    const test::Outcome made = guide("--printer fdm --blade 0.6");
     INFO(made.err);
     REQUIRE(made.code == 0);
     CHECK_THAT(made.out, ContainsSubstring("are left out"));
-    CHECK_THAT(made.out, Catch::Matchers::Matches("(.|\n)*depth of a slot +14.00 mm +given(.|\n)*"));
-    CHECK_THAT(made.out, Catch::Matchers::Matches("(.|\n)*wall of a slot +3.00 mm +BoneReconstructionPlanner(.|\n)*"));
+    CHECK_THAT(made.out, ContainsSubstring("0.60 mm   given"));
+    CHECK_THAT(made.out, ContainsSubstring("3.00 mm   BoneReconstructionPlanner"));
 }
