@@ -3,6 +3,7 @@
 #include "graph/plugin/plugins.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/command/declare.hpp"
+#include "tools/command/written_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/terminal.hpp"
 
@@ -65,6 +66,12 @@ const CLI::App* given_verb(const CLI::App& app) {
     return below.empty() ? &app : given_verb(*below.front());
 }
 
+/// "plan report": the verb with its group.
+std::string full_name_of(const CLI::App& verb, const CLI::App& program) {
+    const CLI::App* parent = verb.get_parent();
+    return parent == &program || !parent ? verb.get_name() : full_name_of(*parent, program) + " " + verb.get_name();
+}
+
 /// Reports a failed system call; returns the exit code.
 int failed_call(const std::system_error& error) {
     say(stderr, fmt::format("tactus: {}\n", error.what()));
@@ -114,7 +121,9 @@ int command_line(const Program& program, int argc, char** argv) {
         bring_forward_nodes(words);
         const std::vector<std::string> handed_on = words_handed_on(program, app, declared, words);
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
-        const DeclaredVerb& chosen = declared.at(given_verb(app));
+        const CLI::App* given = given_verb(app);
+        const DeclaredVerb& chosen = declared.at(given);
+        check_written(*given, full_name_of(*given, app));
         if (plugin::are_given()) nodes::catalogue();  // an error of them is one of the command line
         return chosen.verb->forward ? chosen.verb->forward(handed_on) : chosen.run();
     } catch (const CLI::ParseError& error) {

@@ -12,8 +12,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 namespace tactus::command {
 
@@ -30,7 +33,7 @@ struct FractureChoice {
     double noise = 3.0;                  // % of the contrast
     double spread = 10.0, turn = 20.0;   // mm, degrees
     double spacing = 0.42;               // mm
-    bool json = false;
+    bool overwrite = false, json = false;
 };
 
 analysis::FractureSettings settings_of(const FractureChoice& choice) {
@@ -47,7 +50,24 @@ analysis::FractureSettings settings_of(const FractureChoice& choice) {
     return settings;
 }
 
+/// The files of an earlier call in the folder. Throws Error if they may not be replaced.
+std::vector<std::filesystem::path> replaced_files(const FractureChoice& choice) {
+    std::error_code failed;
+    std::vector<std::filesystem::path> old;
+    for (const auto& entry : std::filesystem::directory_iterator(choice.out, failed))
+        if (const std::string name = entry.path().filename().string();
+            name == "truth.json" ||
+            (name.starts_with("fragment_") && (name.ends_with(".vdb") || name.ends_with(".stl"))))
+            old.push_back(entry.path());
+    if (!old.empty() && !choice.overwrite)
+        throw Error(fmt::format(
+            "{}: the folder already has results ({}); choose another one, or use --overwrite to replace them",
+            choice.out.string(), std::ranges::min(old).filename().string()));
+    return old;
+}
+
 int fracture(const FractureChoice& choice) {
+    const std::vector<std::filesystem::path> old = replaced_files(choice);
     const analysis::FractureSettings settings = settings_of(choice);
     if (settings.missing > settings.pieces - 2) throw Error("at least two pieces must be left; lower --missing");
     const bone::Bone bone = analysis::bone_of_file(choice.bone);
@@ -63,7 +83,11 @@ int fracture(const FractureChoice& choice) {
     analysis::break_and_scan(bone, settings, [&](analysis::ScannedFragment fragment) {
         const std::size_t number = truth["fragments"].size() + 1;
         // The folder is made after the bone is broken, so that a failure leaves no folder.
-        if (number == 1) run::make_output_folder(choice.out);
+        if (number == 1) {
+            run::make_output_folder(choice.out);
+            // Fewer new pieces would leave old ones among them.
+            for (const std::filesystem::path& file : old) std::filesystem::remove(file);
+        }
         const std::string name = fmt::format("fragment_{:02}", number);
         fragment.bone.name = name;
         bone::save_bone(fragment.bone, choice.out / (name + ".vdb"));
@@ -113,6 +137,7 @@ Action declare_fracture(VerbOptions& verb) {
         .unit("mm")
         .shows_default()
         .range(0.1, 5.0);
+    verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.flag("--json", choice->json, "print truth.json as well");
     return [choice] { return fracture(*choice); };
 }
