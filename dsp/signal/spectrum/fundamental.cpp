@@ -239,7 +239,7 @@ FundamentalEstimate FundamentalStream::estimate() const {
         if (!moves) {
             out.frequency = out.low = out.high = lines.frequency;
             out.steady = true;
-            out.deviation = lines.is_sharp ? lines.deviation : 0.0;
+            out.deviation = lines.deviation;
         }
         out.confidence = lines.confidence;
         out.certain = true;

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <numeric>
 
@@ -26,6 +27,7 @@ constexpr double bins_between = 5.0;  // of neighbouring orders: a line of a Han
 
 constexpr std::size_t floor_block = 32;  // bins
 constexpr double explains_all = 0.9;  // fraction of the power
+constexpr double periods_per_piece = 8.0;  // of which persistence is measured: orders must stay separate
 
 struct NarrowLine {
     double frequency, deviation;  // Hz
@@ -194,6 +196,30 @@ double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double
             if (snr > unlikely) strongest = std::max(strongest, lines.segments * (snr - 1.0 - std::log(snr)));
         }
     return strongest;
+}
+
+/// How evenly a line is spread over the record: squared mean of its amplitude in short pieces over the mean square.
+/// Pieces of a few periods: longer ones average a ring over the pause until the next strike.
+double persistence_of(std::span<const double> samples, double rate, double line, double fundamental) {
+    const auto longest = samples.size() / 8;
+    const std::size_t piece =
+        std::min(longest, static_cast<std::size_t>(std::ceil(periods_per_piece * rate / fundamental)));
+    if (piece == 0) return 0.0;
+    std::vector<std::complex<double>> kernel(piece);
+    for (std::size_t n = 0; n < piece; ++n) {
+        const double w =
+            1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(piece));
+        kernel[n] = std::polar(w, 2.0 * std::numbers::pi * line / rate * static_cast<double>(n));
+    }
+    double sum = 0.0, roots = 0.0, count = 0.0;
+    for (std::size_t from = 0; from + piece <= samples.size(); from += piece, count += 1.0) {
+        const std::span<const double> part = samples.subspan(from, piece);
+        const double mean = std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(piece);
+        std::complex<double> amplitude = 0.0;
+        for (std::size_t n = 0; n < piece; ++n) amplitude += kernel[n] * (part[n] - mean);
+        sum += std::norm(amplitude), roots += std::abs(amplitude);
+    }
+    return sum > 0.0 ? roots * roots / (count * sum) : 0.0;
 }
 
 struct CombChoice {
@@ -371,26 +397,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     out.may_be_hum = (has_hum && is_mains(comb.frequency, 0.3)) || common > 1 || is_over_hum;
     out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
-    // The strongest order in eighths of the kept samples.
-    constexpr std::size_t eighths = 8;
-    const std::size_t part = kept_.size() / eighths;
-    double sum = 0.0, roots = 0.0;
-    for (std::size_t i = 0; i < eighths && part > 0; ++i) {
-        double re = 0.0, im = 0.0;
-        const double angle = 2.0 * std::numbers::pi * strongest->frequency / rate_;
-        double mean = 0.0;
-        for (std::size_t n = 0; n < part; ++n) mean += kept_[i * part + n];
-        mean /= static_cast<double>(part);
-        for (std::size_t n = 0; n < part; ++n) {
-            const double w =
-                1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(part));
-            const double x = w * (kept_[i * part + n] - mean), phase = angle * static_cast<double>(n);
-            re += x * std::cos(phase), im += x * std::sin(phase);
-        }
-        const double power = re * re + im * im;
-        sum += power, roots += std::sqrt(power);
-    }
-    out.persistence = sum > 0.0 ? roots * roots / (eighths * sum) : 0.0;
+    out.persistence = persistence_of(kept_, rate_, strongest->frequency, comb.frequency);
     out.confidence = probability_of(out);
     out.deviation = lines.df;
     if (out.is_sharp && !kept_.empty()) {

@@ -14,7 +14,9 @@ namespace tactus::signal {
 
 struct SteadyFundamental {
     double frequency = 0.0;  ///< Hz; 0: no line
-    double deviation = 0.0;  ///< Hz, standard deviation: the Cramér–Rao bound of the orders in the measured noise
+    /// Hz, standard deviation: the Cramér–Rao bound of the orders in the measured noise, or a bin of lines that are not
+    /// sharp.
+    double deviation = 0.0;
     double periods = 0.0;  ///< in the record, or in the segment beyond which the lines are smeared
     std::size_t lines = 0;  ///< number of orders found
     int highest_order = 0;
@@ -25,7 +27,9 @@ struct SteadyFundamental {
     double between = 0.0;  ///< log-likelihood ratio of the strongest bin at an order of a half, third, … of the rate
     double foreign = 0.0;  ///< log-likelihood ratio to noise of the strongest other line that is not hum
     double margin_db = 0.0;  ///< level of the strongest order above the weakest detectable line
-    double persistence = 0.0;  ///< 1: the strongest order is equally strong throughout; 1/8: in one eighth only
+    /// 1: the strongest order is equally strong throughout the record; p: it is in a fraction p only. Lower for a ring
+    /// that decays before the next strike, which is a line of finite width and no tone.
+    double persistence = 0.0;
     double lowest = 0.0;  ///< Hz: lower rates are not resolved
     /// The rate may be an order of the mains, may only combine hum with the orders of a machine, or may be a multiple of a
     /// fundamental whose line was taken for hum.

@@ -179,6 +179,37 @@ TEST_CASE("the ring of a few strikes is no fundamental") {
     CHECK_FALSE(signal::find_fundamental(x, 8000.0).is_certain());
 }
 
+TEST_CASE("a resonance that is struck is no certain steady tone, whatever its rate, damping and strikes") {
+    struct Ring {
+        double hz, quality, strikes;  // strikes per second; 0: at random, 3 per second
+    };
+    for (const Ring& ring : {Ring{211.0, 40.0, 1.0}, Ring{211.0, 40.0, 2.0}, Ring{211.0, 40.0, 0.5},
+                             Ring{211.0, 40.0, 2.7}, Ring{211.0, 40.0, 1.3}, Ring{211.0, 40.0, 0.0},
+                             Ring{95.0, 20.0, 1.0}, Ring{330.0, 60.0, 1.0}, Ring{487.0, 80.0, 2.0},
+                             Ring{150.0, 30.0, 1.0}})
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            const Random random{seed};
+            constexpr double rate = 8000.0;
+            const double decay = std::exp(-std::numbers::pi * ring.hz / ring.quality / rate);
+            const double angle = 2.0 * std::numbers::pi * ring.hz / rate;
+            std::vector<double> x(4 * 8000);
+            double before = 0.0, last = 0.0;
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double t = static_cast<double>(i) / rate;
+                const bool strikes =
+                    ring.strikes > 0.0
+                        ? i == 0 || std::floor(t * ring.strikes) > std::floor((t - 1.0 / rate) * ring.strikes)
+                        : random.uniform(1'000'000 + i) < 3.0 / rate;
+                const double y = (strikes ? 1.0 : 0.0) + 2.0 * decay * std::cos(angle) * last - decay * decay * before;
+                before = last, last = y;
+                x[i] = y + 0.002 * random.normal(i);
+            }
+            const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(x), rate);
+            CAPTURE(ring.hz, ring.quality, ring.strikes, seed, found.frequency, found.confidence);
+            CHECK_FALSE(found.is_certain());
+        }
+}
+
 TEST_CASE("a record in pieces has the fundamental of the whole") {
     const Saw saw(1007);
     signal::FundamentalStream stream(saw.rate, saw.samples.size());
