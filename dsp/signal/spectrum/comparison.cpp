@@ -164,13 +164,24 @@ double power_in_band(double peak, const Spectrum& density, const Comparison& res
     return power;
 }
 
-/// Hz; 0 when it is uncertain.
-double fundamental_of(const Take& take) {
+FundamentalEstimate fundamental_of(const Take& take) {
     FundamentalStream stream(take.rate, take.frames);
     const Take::Blocks blocks = take.open();
     for (std::span<const double> block = blocks(); !block.empty(); block = blocks()) stream.push(block);
-    const FundamentalEstimate found = stream.estimate();
-    return found.is_certain() ? found.frequency : 0.0;
+    return stream.estimate();
+}
+
+/// Sets the fundamentals of both takes, and the rates that may be hum.
+void find_fundamentals(const Take& reference, const Take& output, Comparison& result) {
+    const FundamentalEstimate r = fundamental_of(reference), d = fundamental_of(output);
+    const auto set = [](const FundamentalEstimate& own, const FundamentalEstimate& other, double& hz, double& hum_hz) {
+        const bool is_of_saw = own.may_be_hum && other.is_certain() &&
+                               std::abs(own.frequency / other.frequency - 1.0) < speed_range;
+        if (own.is_certain() || is_of_saw) hz = own.frequency;
+        else if (own.may_be_hum) hum_hz = own.frequency;
+    };
+    set(r, d, result.reference_hz, result.reference_hum_hz);
+    set(d, r, result.output_hz, result.output_hum_hz);
 }
 
 /// Fraction of the variance of a take, at its own rate, that a power in the band is.
@@ -372,8 +383,7 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
         axes.push_back({options.reference_axes[i], options.output_axes[i], pair.reference_start, pair.output_start, 1.0,
                         pair.sign, pair.common});
     const auto [sharp_reference, sharp_output] = spectra_of(axes, sharp);
-    result.reference_hz = fundamental_of(reference);
-    result.output_hz = fundamental_of(output);
+    find_fundamentals(reference, output, result);
     const double ratio = result.output_hz / result.reference_hz;
     const bool one_saw = std::abs(ratio - 1.0) < speed_range;
     // Both rates are known and similar: the output is resampled to the reference's.

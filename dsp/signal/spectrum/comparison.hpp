@@ -72,6 +72,8 @@ struct Comparison {
     double reference_kurtosis = 0.0, output_kurtosis = 0.0;  ///< in the band
     double reference_inside = 0.0, output_inside = 0.0;  ///< fraction of the variance of each take within the band
     double reference_hz = 0.0, output_hz = 0.0;  ///< fundamentals; 0 when none was found
+    /// Hz: rates at orders of the mains that may be hum or a machine's; 0: none. They are no fundamentals.
+    double reference_hum_hz = 0.0, output_hum_hz = 0.0;
     double speed_ratio = 1.0;  ///< output's over the reference's, corrected in the spectra
     MatchedLines lines;
 
@@ -83,7 +85,8 @@ struct Comparison {
 
 /// Compares two takes of any rates and lengths of at least 0.5 s, in constant memory; each is read up to four times.
 /// Whether they are simultaneous is determined from their loudest minute. Other takes are compared by their spectra
-/// only; if both are of one saw at rates within 3 % of each other, they are compared at equal orders. Throws Error when
+/// only; if both are of one saw at rates within 3 % of each other, they are compared at equal orders. A rate that may be
+/// hum is the saw's if the other take has a certain rate that near: hum is the same in both. Throws Error when
 /// a take is too short or silent, or cannot be trusted up to `narrowest_band`. Allocates.
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options = {});
 

@@ -275,6 +275,8 @@ FundamentalEstimate FundamentalStream::estimate() const {
             out.certain = true;
         }
     }
+    out.may_be_hum = !out.certain && lines.is_at_mains && lines.confidence_without_hum >= FundamentalEstimate::sure &&
+                     alike(lines.frequency, out.frequency, 0.003);
     const auto add_rival = [&](double frequency, double score) {
         if (frequency > 0.0 && !alike(frequency, out.frequency, 0.03) &&
             std::ranges::none_of(out.rivals,

@@ -25,6 +25,8 @@ struct FundamentalEstimate {
     /// True only if the error rate is at most about 1 % of machines. Never true if the record does not resolve half of
     /// the rate.
     bool certain = false;
+    /// Uncertain only because the rate is an order of the mains: hum, or a machine.
+    bool may_be_hum = false;
     bool steady = false;  ///< constant rate; otherwise `frequency` is the median of its path
     double low = 0.0, high = 0.0;  ///< Hz: the middle 80 % of the path
     /// Hz: standard deviation of a steady rate (Cramér–Rao bound in the measured noise), or the width of a bin if its

@@ -27,6 +27,12 @@ constexpr double bins_between = 5.0;  // of neighbouring orders: a line of a Han
 
 constexpr std::size_t floor_block = 32;  // bins
 constexpr double explains_all = 0.9;  // fraction of the power
+// Hum has odd orders of 50 or 60 Hz, with much weaker even ones, or a few orders of twice that. A comb of this many
+// first orders, none of which has less than this fraction of the power of the strongest, is a machine's.
+constexpr int machine_orders = 5;
+constexpr double min_machine_power = 1e-3;
+// The frequency of the mains varies by 0.1 % (continental Europe: within 50 mHz of 50 Hz for 99 % of the time).
+constexpr double mains_range = 1e-3;
 constexpr double periods_per_piece = 8.0;  // of which persistence is measured: orders must stay separate
 
 struct NarrowLine {
@@ -252,10 +258,25 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
     return out;
 }
 
+/// Whether a comb has the orders of a machine, and nearly all of the power of the lines: hum beside another machine
+/// has not.
+bool has_machine_orders(const NarrowLines& lines, const GrownComb& comb) {
+    std::array<double, machine_orders> powers{};
+    double all = 0.0;
+    for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i) {
+        all += lines.found[i].power;
+        if (const int order = comb.order[i]; order >= 1 && order <= machine_orders)
+            powers[static_cast<std::size_t>(order - 1)] += lines.found[i].power;
+    }
+    const auto [least, greatest] = std::ranges::minmax(powers);
+    return least > 0.0 && least >= min_machine_power * greatest && comb.power >= explains_all * all;
+}
+
 /// Probability that the rate is right: logistic regression on the 1,000 machines of seed_lines 0 to 999 of `tactus-bench fundamental`, which judges it on others.
-/// Where the regression would extrapolate it is 0: hum of the mains, fewer than half of the lines, fewer than 6 periods.
+/// Where the regression would extrapolate it is 0: hum among the orders, fewer than half of the lines, fewer than 6
+/// periods.
 double probability_of(const SteadyFundamental& one) {
-    if (!(one.explained >= 0.5) || one.periods < 6.0 || one.may_be_hum) return 0.0;
+    if (!(one.explained >= 0.5) || one.periods < 6.0 || one.may_combine_hum) return 0.0;
     if (one.persistence < 0.5) return 0.0;
     const double gap = std::clamp(one.score - one.rival_score, 0.0, 12.0);
     const double missing = std::min(6.0, static_cast<double>(one.highest_order) - static_cast<double>(one.lines));
@@ -371,6 +392,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     out.periods = comb.frequency / lines.df;
     out.explained = explained_by(comb.power, lines, chosen.with_hum);
     const NarrowLine* strongest = nullptr;
+    int strongest_order = 1;
     std::vector<int> orders;
     int common = 0;  // divisor of the orders that are no hum
     std::vector<double> others;
@@ -389,16 +411,20 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
             if (others.size() < 8) others.push_back(line.frequency);
             continue;
         }
-        if (!strongest || line.power > strongest->power) strongest = &line;
+        if (!strongest || line.power > strongest->power) strongest = &line, strongest_order = comb.order[i];
         orders.push_back(comb.order[i]);
         if (!line.is_hum) common = std::gcd(common, comb.order[i]);
     }
     // Also a comb that only lines of the mains hold together: without them a multiple explains the machine's.
-    out.may_be_hum = (has_hum && is_mains(comb.frequency, 0.3)) || common > 1 || is_over_hum;
+    const bool is_machine = has_machine_orders(lines, comb);
+    out.may_combine_hum = (common > 1 && !is_machine) || is_over_hum;
+    const double reach = mains_range * comb.frequency + 3.0 * strongest->deviation / strongest_order;
+    out.is_at_mains = has_hum && is_mains(comb.frequency, reach) && !is_machine;
     out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
     out.persistence = persistence_of(kept_, rate_, strongest->frequency, comb.frequency);
-    out.confidence = probability_of(out);
+    out.confidence_without_hum = probability_of(out);
+    out.confidence = out.is_at_mains ? 0.0 : out.confidence_without_hum;
     out.deviation = lines.df;
     if (out.is_sharp && !kept_.empty()) {
         const HarmonicFit fit = fit_harmonics(kept_, rate_, comb.frequency, orders, others);

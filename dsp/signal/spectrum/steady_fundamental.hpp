@@ -31,12 +31,16 @@ struct SteadyFundamental {
     /// that decays before the next strike, which is a line of finite width and no tone.
     double persistence = 0.0;
     double lowest = 0.0;  ///< Hz: lower rates are not resolved
-    /// The rate may be an order of the mains, may only combine hum with the orders of a machine, or may be a multiple of a
-    /// fundamental whose line was taken for hum.
-    bool may_be_hum = false;
+    /// The rate is an order of the mains, and its lines are too few to exclude hum.
+    bool is_at_mains = false;
+    /// The rate may only combine hum with the orders of a machine, or may be a multiple of a fundamental whose line was
+    /// taken for hum.
+    bool may_combine_hum = false;
     bool is_sharp = false;  ///< the lines are as narrow as the longest segment resolves
-    /// Probability that the rate is correct, not a multiple or fraction of the true rate; see `FundamentalEstimate`.
+    /// Probability that the rate is correct, not a multiple or fraction of the true rate; see `FundamentalEstimate`. 0 at
+    /// an order of the mains.
     double confidence = 0.0;
+    double confidence_without_hum = 0.0;  ///< the same if the lines at orders of the mains are a machine's
 };
 
 /// Estimates the fundamental of a steady record that comes in pieces, in constant memory (about 20 MB at most).

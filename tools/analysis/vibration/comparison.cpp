@@ -164,6 +164,14 @@ ComparedPair compare_files(const CompareSettings& settings) {
                 fmt::format("{:.0f} % of the power of the {} lies outside of {:.0f} to {:.0f} Hz and is not judged",
                             100.0 * (1.0 - inside), name, o.comparison.lowest, o.comparison.highest));
         }
+    for (const auto& [name, hz] : {std::pair("reference", o.comparison.reference_hum_hz),
+                                   std::pair("output", o.comparison.output_hum_hz)})
+        if (hz > 0.0)
+            o.notes.push_back(
+                fmt::format("{:.2f} Hz in the {} is an order of the mains, mains hum or a machine: its orders are not "
+                            "judged; a take of the saw at a rate up to 3 % away from it, as reference or output, "
+                            "decides",
+                            hz, name));
     o.level_gap_db = level_gap(settings, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, settings.thresholds);
     return o;

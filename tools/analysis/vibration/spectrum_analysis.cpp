@@ -94,11 +94,17 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
                                        report.lines.segments, 4.34 * report.lines.relative_deviation()));
     if (const signal::FundamentalEstimate& found = report.fundamental; found.frequency > 0.0 && !found.is_certain()) {
         const std::string periods = fmt::format("the record has {:.0f} periods", found.periods);
-        warnings.push_back(found.rivals.empty()
-                               ? fmt::format("cannot tell whether {:.1f} Hz is the fundamental or a multiple of it: {}",
-                                             found.frequency, periods)
-                               : fmt::format("cannot tell {:.1f} from {:.1f} Hz: {}", found.frequency,
-                                             found.rivals.front().frequency, periods));
+        if (found.may_be_hum)
+            warnings.push_back(
+                fmt::format("cannot tell whether {:.1f} Hz, an order of the mains, is mains hum or a machine of fewer "
+                            "than 5 strong orders; a record with the machine off shows the hum",
+                            found.frequency));
+        else if (found.rivals.empty())
+            warnings.push_back(fmt::format("cannot tell whether {:.1f} Hz is the fundamental or a multiple of it: {}",
+                                           found.frequency, periods));
+        else
+            warnings.push_back(fmt::format("cannot tell {:.1f} from {:.1f} Hz: {}", found.frequency,
+                                           found.rivals.front().frequency, periods));
     }
     if (report.fundamental.frequency > 0.0 && !report.fundamental.steady)
         warnings.push_back(

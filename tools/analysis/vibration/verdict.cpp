@@ -13,6 +13,14 @@ namespace {
 constexpr double coherent = 0.5;
 constexpr double max_course_db = 3.0;  // rms of the level difference over time of what are copies
 
+constexpr double max_mains_order = 12.0;
+
+/// Order of the mains of a line; 0: it is none. The mains varies by 0.1 %, and the place of a line by 0.05 Hz.
+double mains_order(double hz, int mains) {
+    const double order = std::round(hz / mains);
+    return order <= max_mains_order && std::abs(hz - order * mains) < 0.05 + 1e-3 * hz ? order : 0.0;
+}
+
 std::vector<signal::SpectralLine> stronger_than(const std::vector<signal::SpectralLine>& lines, double min_db) {
     std::vector<signal::SpectralLine> out;
     for (const signal::SpectralLine& line : lines)
@@ -104,19 +112,43 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
     return verdict;
 }
 
-std::string name_of_line(double hz, double fundamental_hz) {
+int mains_of(std::span<const signal::SpectralLine> lines) {
+    int found = 0;
+    std::ptrdiff_t most = 0;
+    for (const int mains : {50, 60}) {
+        const auto count = [&](double last) {
+            return std::ranges::count_if(lines, [&](const signal::SpectralLine& line) {
+                const double order = mains_order(line.frequency, mains);
+                return order >= 1.0 && order <= last;
+            });
+        };
+        if (const std::ptrdiff_t all = count(max_mains_order); count(3.0) > 0 && all > most) found = mains, most = all;
+    }
+    return found;
+}
+
+std::string name_of_line(double hz, double fundamental_hz, int mains_hz) {
     if (fundamental_hz > 0.0) {
         const double order = std::round(hz / fundamental_hz);
         if (order >= 1.0 && std::abs(hz - order * fundamental_hz) < std::max(0.003 * hz, 1.0))
             return fmt::format("order {:.0f}", order);
     }
-    for (const double mains : {50.0, 60.0}) {
-        const double multiple = std::round(hz / mains);
-        if (multiple >= 1.0 && multiple <= 10.0 && std::abs(hz - multiple * mains) < 0.5)
-            return multiple == 1.0 ? fmt::format("mains hum, {:g} Hz", mains)
-                                   : fmt::format("mains hum, {:g} × {:g} Hz", multiple, mains);
-    }
-    return "";
+    if (mains_hz <= 0) return "";
+    const double order = mains_order(hz, mains_hz);
+    if (!(order >= 1.0)) return "";
+    return order == 1.0 ? fmt::format("mains hum, {} Hz", mains_hz)
+                        : fmt::format("mains hum, {:g} × {} Hz", order, mains_hz);
+}
+
+LineNames::LineNames(const signal::Comparison& c)
+    : reference_hz_(c.reference_hz), output_hz_(c.output_hz > 0.0 ? c.output_hz : c.reference_hz) {
+    const auto mains = [&](const std::vector<signal::SpectralLine>& own) {
+        std::vector<signal::SpectralLine> all = c.lines.in_both;
+        all.insert(all.end(), own.begin(), own.end());
+        return mains_of(all);
+    };
+    reference_mains_ = mains(c.lines.only_in_reference);
+    output_mains_ = mains(c.lines.only_in_output);
 }
 
 }  // namespace tactus::analysis

@@ -5,6 +5,7 @@
 #include "assets/table/thresholds.hpp"
 #include "dsp/signal/spectrum/comparison.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,24 @@ struct Verdict {
 
 Verdict judge(const signal::Comparison& comparison, double level_gap_db, const table::Thresholds& thresholds);
 
-/// "mains hum, 3 × 50 Hz", "order 2" of the fundamental, or "".
-std::string name_of_line(double hz, double fundamental_hz);
+/// Frequency of the mains whose hum is among the lines of a record: 50 or 60 Hz, whichever has more of them; 0 if none
+/// is one of its first three orders.
+int mains_of(std::span<const signal::SpectralLine> lines);
+
+/// "order 2" of the fundamental, "mains hum, 3 × 50 Hz" of mains of `mains_hz`, or "". 0: unknown.
+std::string name_of_line(double hz, double fundamental_hz, int mains_hz);
+
+/// Names the lines of a comparison that the reference has, and those that only the output has.
+class LineNames {
+public:
+    explicit LineNames(const signal::Comparison& comparison);
+
+    std::string of_reference(double hz) const { return name_of_line(hz, reference_hz_, reference_mains_); }
+    std::string of_output(double hz) const { return name_of_line(hz, output_hz_, output_mains_); }
+
+private:
+    double reference_hz_, output_hz_;
+    int reference_mains_, output_mains_;
+};
 
 }  // namespace tactus::analysis

@@ -101,14 +101,12 @@ private:
 };
 
 /// "×2" for the second order, "hum" for the mains.
-std::string short_name(double hz, double fundamental) {
-    const std::string name = analysis::name_of_line(hz, fundamental);
+std::string short_name(const std::string& name) {
     return name.starts_with("order ") ? "×" + name.substr(6) : name.empty() ? "" : "hum";
 }
 
-std::string with_name(const std::string& text, double hz, double fundamental) {
-    const std::string name = short_name(hz, fundamental);
-    return name.empty() ? text : text + " (" + name + ")";
+std::string with_name(const std::string& text, const std::string& name) {
+    return name.empty() ? text : text + " (" + short_name(name) + ")";
 }
 
 void draw_spectra(display::Figure& figure, const signal::Comparison& c, const PlotPanel::Range& hz, double y,
@@ -130,6 +128,7 @@ void draw_spectra(display::Figure& figure, const signal::Comparison& c, const Pl
     panel.curve(d, c.step, output_colour, 1.3);
     double taken = -1e9;
     Names names(figure, y - 4.0);
+    const analysis::LineNames line_names(c);
     for (const signal::SpectralLine& line : c.lines.in_both) {
         const double x = panel.x_of(line.frequency), level = level_at(r, c.step, line.frequency);
         if (line.frequency < hz.lowest || line.frequency > hz.highest) continue;
@@ -137,7 +136,7 @@ void draw_spectra(display::Figure& figure, const signal::Comparison& c, const Pl
         const double at = panel.y_of(std::max(level, level_at(d, c.step, line.frequency))) - 5.0;
         const std::string number = fmt::format("{:.0f}", line.frequency);
         names.write(x, at, number, ink);
-        if (const std::string name = short_name(line.frequency, c.reference_hz); !name.empty())
+        if (const std::string name = short_name(line_names.of_reference(line.frequency)); !name.empty())
             names.write(x, at - 11.0, name, soft);
         taken = x;
     }
@@ -146,17 +145,17 @@ void draw_spectra(display::Figure& figure, const signal::Comparison& c, const Pl
         const double x = panel.x_of(line.frequency), at = panel.y_of(level_at(r, c.step, line.frequency)) - 3.0;
         mark(figure, x, at, reference_colour, true);
         const std::string name =
-            with_name(fmt::format("{:.0f} missing", line.frequency), line.frequency, c.reference_hz);
+            with_name(fmt::format("{:.0f} missing", line.frequency), line_names.of_reference(line.frequency));
         names.write(x, at - 11.0, name, reference_colour);
     }
-    const double base = c.output_hz > 0.0 ? c.output_hz : c.reference_hz;
     for (const signal::SpectralLine& line : c.lines.only_in_output) {
         const double f = line.frequency * (1.0 / c.speed_ratio);
         if (f < hz.lowest || f > hz.highest) continue;
         const double x = std::max(panel.x_of(f), left + 4.0);
         const double at = panel.y_of(level_at(d, c.step, f)) - 3.0;
         mark(figure, x, at, added_colour, true);
-        const std::string name = with_name(fmt::format("{:.0f} added", line.frequency), line.frequency, base);
+        const std::string name =
+            with_name(fmt::format("{:.0f} added", line.frequency), line_names.of_output(line.frequency));
         names.write(x, at - 11.0, name, added_colour,
                     x < left + 30.0 ? display::TextAnchor::start : display::TextAnchor::middle);
     }

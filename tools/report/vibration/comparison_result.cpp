@@ -57,30 +57,33 @@ const Fields<Both>& both_fields() {
     return all;
 }
 
-/// A line, and the fundamental that names it.
+/// A line with its name, which may be empty.
 struct Line {
     const signal::SpectralLine* line;
-    double fundamental;  ///< Hz
+    std::string name;
     const char* where;
-
-    std::string name() const { return analysis::name_of_line(line->frequency, fundamental); }
 };
 
-std::vector<Line> lines_of(const std::vector<signal::SpectralLine>& lines, double fundamental, const char* where) {
+std::vector<Line> in_both(const Pair& p) {
+    const analysis::LineNames names(p.comparison);
     std::vector<Line> all;
-    for (const signal::SpectralLine& line : lines) all.push_back({&line, fundamental, where});
+    for (const signal::SpectralLine& line : p.comparison.lines.in_both)
+        all.push_back({&line, names.of_reference(line.frequency), "both"});
     return all;
 }
-
-std::vector<Line> in_both(const Pair& p) {
-    return lines_of(p.comparison.lines.in_both, p.comparison.reference_hz, "both");
-}
 std::vector<Line> only_in_reference(const Pair& p) {
-    return lines_of(p.comparison.lines.only_in_reference, p.comparison.reference_hz, "only in the reference");
+    const analysis::LineNames names(p.comparison);
+    std::vector<Line> all;
+    for (const signal::SpectralLine& line : p.comparison.lines.only_in_reference)
+        all.push_back({&line, names.of_reference(line.frequency), "only in the reference"});
+    return all;
 }
 std::vector<Line> only_in_output(const Pair& p) {
-    const Comparison& c = p.comparison;
-    return lines_of(c.lines.only_in_output, c.output_hz > 0.0 ? c.output_hz : c.reference_hz, "only in the output");
+    const analysis::LineNames names(p.comparison);
+    std::vector<Line> all;
+    for (const signal::SpectralLine& line : p.comparison.lines.only_in_output)
+        all.push_back({&line, names.of_output(line.frequency), "only in the output"});
+    return all;
 }
 
 std::vector<Line> all_lines(const Pair& p) {
@@ -96,8 +99,8 @@ std::string few(const Pair& p) {
     const std::vector<Line> all = lines(p);
     std::vector<std::string> names;
     for (const Line& line : std::span(all).first(std::min(max_lines, all.size()))) {
-        const std::string name = line.name();
-        names.push_back(fmt::format("{:.1f} Hz{}", line.line->frequency, name.empty() ? "" : " (" + name + ")"));
+        names.push_back(
+            fmt::format("{:.1f} Hz{}", line.line->frequency, line.name.empty() ? "" : " (" + line.name + ")"));
     }
     if (all.size() > max_lines) names.push_back(fmt::format("and {} more", all.size() - max_lines));
     return fmt::format("{}", fmt::join(names, ", "));
@@ -114,10 +117,7 @@ const Fields<Line>& line_fields() {
             .number("db", "", fixed(1, "dB"), [](const Line& l) { return signal::level_db(*l.line); })
             .number("snr_db", "SNR", fixed(1, "dB"), [](const Line& l) { return l.line->snr_db; })
             .text("name", "",
-                  [](const Line& l) {
-                      const std::string name = l.name();
-                      return name.empty() ? std::nullopt : std::optional(name);
-                  })
+                  [](const Line& l) { return l.name.empty() ? std::nullopt : std::optional(l.name); })
             .omitted()
             .text("", "in", [](const Line& l) { return std::string(l.where); });
     return all;
@@ -175,11 +175,15 @@ std::string recordings_text(const Pair& p) {
 
 std::string saw_text(const Pair& p) {
     const Comparison& c = p.comparison;
-    if (!(c.reference_hz > 0.0)) return {};
-    return fmt::format(
-        "{:.2f} Hz in the reference, {}{}", c.reference_hz,
-        c.output_hz > 0.0 ? fmt::format("{:.2f} Hz in the output", c.output_hz) : "not found in the output",
-        c.speed_ratio != 1.0 ? "; compared at equal orders" : "");
+    if (!(std::max({c.reference_hz, c.output_hz, c.reference_hum_hz, c.output_hum_hz}) > 0.0)) return {};
+    const auto rate_in = [](double hz, double hum_hz, const char* name) {
+        if (hz > 0.0) return fmt::format("{:.2f} Hz in the {}", hz, name);
+        if (hum_hz > 0.0) return fmt::format("{:.2f} Hz in the {} (or mains hum: not used)", hum_hz, name);
+        return fmt::format("not found in the {}", name);
+    };
+    return fmt::format("{}, {}{}", rate_in(c.reference_hz, c.reference_hum_hz, "reference"),
+                       rate_in(c.output_hz, c.output_hum_hz, "output"),
+                       c.speed_ratio != 1.0 ? "; compared at equal orders" : "");
 }
 
 std::string level_text(const Pair& p) {

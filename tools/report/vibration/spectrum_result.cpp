@@ -195,6 +195,7 @@ const Fields<signal::FundamentalEstimate>& fundamental_fields() {
     static const Fields<F> all =
         Fields<F>("estimate of the fundamental")
             .flag("certain", "", &F::is_certain)
+            .flag("may_be_hum", "", &F::may_be_hum)
             .flag("steady", "", &F::steady)
             .range("range_hz", "", fixed(3, "Hz"), [](const F& f) { return std::optional(std::pair(f.low, f.high)); })
             .number("deviation_hz", "", fixed(3, "Hz"), [](const F& f) { return if_positive(f.deviation); })
@@ -206,8 +207,10 @@ const Fields<signal::FundamentalEstimate>& fundamental_fields() {
 std::string fundamental_text(const Channel& c) {
     const signal::FundamentalEstimate& f = c.report().fundamental;
     if (!(f.frequency > 0.0)) return "none";
-    std::string text =
-        fmt::format("{:.3f} Hz, confidence {:.2f}{}", f.frequency, f.confidence, f.is_certain() ? "" : ", uncertain");
+    std::string text = fmt::format("{:.3f} Hz, confidence {:.2f}{}", f.frequency, f.confidence,
+                                   f.is_certain()   ? ""
+                                   : f.may_be_hum ? ", uncertain: it may be mains hum"
+                                                  : ", uncertain");
     for (const signal::HarmonicSum& rival : f.rivals)
         text += fmt::format("{} {:.1f}", &rival == f.rivals.data() ? "; or" : ",", rival.frequency);
     return text;

@@ -9,6 +9,9 @@
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
@@ -95,6 +98,54 @@ TEST_CASE("two takes of one saw at 233 and 233.4 Hz score as the same saw, and a
         CHECK(other.cosine_500 < 0.7);
         CHECK(other.lines.only_in_output.size() >= 3);
     }
+}
+
+TEST_CASE("saws at orders of the mains are compared at equal orders, as at other rates") {
+    struct Case {
+        double reference, output;
+        int orders;
+        double slope;  // amplitude of order k: k to the power of −slope
+    };
+    for (const Case& one : {Case{100.0, 100.7, 7, 1.0}, Case{120.0, 121.0, 7, 1.0}, Case{60.0, 60.4, 7, 0.8},
+                            Case{50.7, 50.0, 6, 1.0}, Case{120.0, 120.3, 6, 1.5}, Case{99.7, 100.0, 7, 1.0},
+                            // Too few orders to exclude hum in one record: the other has the same at another rate.
+                            Case{100.0, 101.0, 3, 1.0}, Case{61.0, 60.0, 4, 1.0}}) {
+        CAPTURE(one.reference, one.output, one.orders);
+        const auto saw = [&](double hz, std::uint64_t seed) {
+            const Random random{seed};
+            std::vector<double> x(8 * 8000);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double angle = 2.0 * std::numbers::pi * hz * static_cast<double>(i) / 8000.0;
+                x[i] = 0.02 * random.normal(i);
+                for (int k = 1; k <= one.orders; ++k) x[i] += std::pow(k, -one.slope) * std::sin(k * angle + k * k);
+            }
+            return x;
+        };
+        const std::vector<double> r = saw(one.reference, 1), d = saw(one.output, 2);
+        const signal::Comparison found = signal::compare({std::span(r), 8000.0}, {std::span(d), 8000.0});
+        CHECK(found.speed_ratio == Approx(one.output / one.reference).epsilon(1e-4));
+        CHECK(found.lsd_db < 0.5);
+        CHECK(found.harmonic_error_db.value_or(99.0) < 0.5);
+        CHECK(found.lines.only_in_reference.empty());
+        CHECK(found.lines.only_in_output.empty());
+        CHECK(found.lines.in_both.size() >= static_cast<std::size_t>(one.orders));
+    }
+}
+
+TEST_CASE("hum is no saw, and a rate that may be hum is reported as such") {
+    const Random random{3};
+    std::vector<double> r(8 * 8000), d(r.size());
+    for (std::size_t i = 0; i < r.size(); ++i) {
+        const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / 8000.0;
+        r[i] = 0.02 * random.normal(i), d[i] = 0.02 * random.normal(i + r.size());
+        for (const int k : {1, 2, 3, 5}) r[i] += std::sin(50.0 * k * angle + k) / (k * k);
+        for (const int k : {1, 2, 3}) d[i] += std::sin(100.0 * k * angle + k) / (k * k);
+    }
+    const signal::Comparison found = signal::compare({std::span(r), 8000.0}, {std::span(d), 8000.0});
+    CHECK(found.reference_hz == 0.0);
+    CHECK(found.output_hz == 0.0);
+    CHECK(found.reference_hum_hz == Approx(50.0).margin(0.01));
+    CHECK(found.output_hum_hz == Approx(100.0).margin(0.01));
 }
 
 TEST_CASE("mains hum that only the output has is found, and named by its frequency") {

@@ -210,6 +210,24 @@ TEST_CASE("a resonance that is struck is no certain steady tone, whatever its ra
         }
 }
 
+TEST_CASE("of few orders of the mains it is reported that they may be hum, and of many that they are a machine's") {
+    for (const double hz : {50.0, 60.0, 100.0, 120.0})
+        for (const int orders : {2, 3, 4, 7}) {
+            const Random random{7};
+            std::vector<double> x(8 * 8000);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                x[i] = 0.02 * random.normal(i);
+                for (int k = 1; k <= orders; ++k)
+                    x[i] += std::sin(2.0 * std::numbers::pi * hz * k * static_cast<double>(i) / 8000.0 + k) / k;
+            }
+            const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(x), 8000.0);
+            CAPTURE(hz, orders, found.frequency, found.confidence);
+            CHECK(found.frequency == Approx(hz).margin(0.01));
+            CHECK(found.is_certain() == (orders == 7));
+            if (orders > 2) CHECK(found.may_be_hum == (orders != 7));
+        }
+}
+
 TEST_CASE("a record in pieces has the fundamental of the whole") {
     const Saw saw(1007);
     signal::FundamentalStream stream(saw.rate, saw.samples.size());

@@ -81,9 +81,23 @@ TEST_CASE("a line that only one has counts by its level beside the reference's s
 }
 
 TEST_CASE("a line is called after the saw's order first, then after the mains") {
-    CHECK(name_of_line(466.1, 233.0) == "order 2");
-    CHECK(name_of_line(50.02, 233.0) == "mains hum, 50 Hz");
-    CHECK(name_of_line(180.0, 0.0) == "mains hum, 3 × 60 Hz");
-    CHECK(name_of_line(100.0, 50.0) == "order 2");
-    CHECK(name_of_line(77.0, 233.0).empty());
+    CHECK(name_of_line(466.1, 233.0, 50) == "order 2");
+    CHECK(name_of_line(50.02, 233.0, 50) == "mains hum, 50 Hz");
+    CHECK(name_of_line(180.0, 0.0, 60) == "mains hum, 3 × 60 Hz");
+    CHECK(name_of_line(100.0, 50.0, 50) == "order 2");
+    CHECK(name_of_line(77.0, 233.0, 50).empty());
+    CHECK(name_of_line(100.0, 0.0, 0).empty());
+}
+
+TEST_CASE("the lines of one record are hum of one mains, and only as near to it as the mains is steady") {
+    signal::Comparison c = good();
+    for (const double hz : {100.0, 200.0, 300.0, 400.0, 500.0, 600.0})
+        c.lines.only_in_reference.push_back(line(hz, -20.0));
+    c.lines.only_in_output = {line(99.7, -20.0), line(199.4, -20.0), line(299.1, -20.0), line(900.0, -20.0)};
+    const LineNames names(c);
+    CHECK(names.of_reference(100.0) == "mains hum, 2 × 50 Hz");
+    CHECK(names.of_reference(600.0) == "mains hum, 12 × 50 Hz");
+    for (const double hz : {99.7, 199.4, 299.1, 900.0}) CHECK(names.of_output(hz).empty());
+    CHECK(mains_of(std::vector{line(60.02, -30.0), line(180.0, -30.0), line(300.0, -30.0)}) == 60);
+    CHECK(mains_of(std::vector{line(400.0, -30.0)}) == 0);
 }

@@ -236,6 +236,38 @@ TEST_CASE("a report is one page that needs nothing else and names what it found"
     CHECK(folder.tactus("compare " + a + " " + a + " --report /nowhere/page.html").code == 2);
 }
 
+TEST_CASE("saws at an order of the mains are compared at equal orders, and what may be hum is reported as such") {
+    const Folder folder;
+    const SoundShape shape{.rate = 8000, .seconds = 8.0};
+    const auto orders = [](double hz, int count, std::uint64_t seed) {
+        return [=, state = seed](double t) mutable {
+            state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+            double sum = 0.02 * (static_cast<double>(state >> 11) * 0x1.0p-53 - 0.5);
+            for (int k = 1; k <= count; ++k) sum += std::sin(2.0 * std::numbers::pi * k * hz * t + k * k) / k;
+            return 0.3 * sum;
+        };
+    };
+    const std::string saw = sound_of(folder, "saw.wav", orders(100.0, 7, 1), shape).string(),
+                      faster = sound_of(folder, "faster.wav", orders(100.7, 7, 2), shape).string(),
+                      few = sound_of(folder, "few.wav", orders(100.0, 3, 3), shape).string(),
+                      again = sound_of(folder, "again.wav", orders(100.0, 3, 4), shape).string();
+    const Outcome same = folder.tactus("compare " + saw + " " + faster);
+    CAPTURE(same.out);
+    CHECK(same.code == 0);
+    CHECK(same.out.find("100.00 Hz in the reference, 100.70 Hz in the output; compared at equal orders") !=
+          std::string::npos);
+    CHECK(same.out.find("mains hum") == std::string::npos);
+    const Outcome hum = folder.tactus("compare " + few + " " + again);
+    CAPTURE(hum.out);
+    CHECK(hum.out.find("100.00 Hz in the reference (or mains hum: not used)") != std::string::npos);
+    CHECK(hum.out.find("is an order of the mains, mains hum or a machine") != std::string::npos);
+    const Outcome one = folder.tactus("spectrum " + few);
+    CAPTURE(one.out);
+    CHECK(one.out.find("uncertain: it may be mains hum") != std::string::npos);
+    CHECK(one.out.find("a record with the machine off shows the hum") != std::string::npos);
+    CHECK(folder.tactus("spectrum " + saw).out.find("uncertain") == std::string::npos);
+}
+
 TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2", "[slow]") {
     const Folder folder;
     const std::string good = sound_of(folder, "good.wav", saw(233.0)).string();
