@@ -22,9 +22,11 @@ namespace {
 
 constexpr std::array texts{".txt", ".json", ".csv", ".html", ".pdf"};
 
+/// The first picture that can be drawn: a figure without data has no function to draw it.
 const report::ResultEntry::Picture* first_picture(const report::Result& result) {
     for (const report::ResultEntry& entry : result.entries) {
-        if (const auto* picture = std::get_if<report::ResultEntry::Picture>(&entry.value)) return picture;
+        if (const auto* picture = std::get_if<report::ResultEntry::Picture>(&entry.value); picture && picture->draw)
+            return picture;
         if (const auto* children = std::get_if<report::ResultEntry::Children>(&entry.value))
             for (const report::Result& one : children->results)
                 if (const auto* picture = first_picture(one)) return picture;
