@@ -26,6 +26,9 @@ bool is_written(std::string_view verb, const CLI::Option& option);
 /// folder itself, or makes a new one.
 std::vector<std::string> files_in_folder(std::string_view verb);
 
+/// Names directly in a folder that the verb reads which it may replace, as "report.*": its own results of another time.
+std::vector<std::string> own_results(std::string_view verb);
+
 /// `verb`: with its group, as "plan report". Throws Error if an output would overwrite an input.
 void check_written(const CLI::App& app, const std::string& verb);
 

@@ -138,7 +138,7 @@ void write_bids(const ExperimentAnalysis& analysis, const fs::path& folder) {
     // What is not of the standard: validators leave it out.
     file::write_whole_file(
         folder / ".bidsignore",
-        "frozen/\nexperiment.json\nreport.html\nresults.json\nmixed/\nsub-*/trials.jsonl\nsub-*/trial-*\n");
+        "frozen/\nexperiment.json\nreport.*\nresults.*\nmixed/\nsub-*/trials.jsonl\nsub-*/trial-*\n");
     // A laboratory may have written its own.
     if (!fs::exists(folder / "README"))
         file::write_whole_file(

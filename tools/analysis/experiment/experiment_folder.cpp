@@ -265,8 +265,14 @@ void ExperimentFolder::withdraw(const std::string& pseudonym) {
     file_.subjects.erase(found);
     save();
     // Results of an analysis may name the subject.
-    for (const char* name : {"report.html", "results.json", "participants.tsv", "mixed"})
-        fs::remove_all(folder_ / name, failure);
+    std::vector<fs::path> results{folder_ / "participants.tsv", folder_ / "mixed"};
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (const fs::path stem = entry.path().stem(); stem == "report" || stem == "results")
+            results.push_back(entry.path());
+    for (const fs::path& result : results) {
+        fs::remove_all(result, failure);
+        if (failure) throw Error(fmt::format("{}: cannot be deleted: {}", result.string(), failure.message()));
+    }
 }
 
 std::string ExperimentFolder::protocol_hash() const {

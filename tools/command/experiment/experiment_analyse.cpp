@@ -2,6 +2,7 @@
 // tactus experiment analyse: tables, tests and a report.
 #include "tools/analysis/experiment/analysis.hpp"
 #include "tools/analysis/experiment/mixed_models.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/counted.hpp"
@@ -13,9 +14,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace tactus::command {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -26,8 +31,23 @@ struct AnalyseChoice {
     ResultChoice printed;
 };
 
+/// Within the folder only report.* and results.*: every other name may be that of data, and `withdraw` deletes these.
+void check_results_in_folder(const AnalyseChoice& choice) {
+    std::error_code failed;
+    const fs::path folder = fs::weakly_canonical(fs::absolute(choice.folder), failed);
+    for (const fs::path& out : choice.printed.out) {
+        const fs::path file = fs::weakly_canonical(fs::absolute(out), failed);
+        if (std::ranges::mismatch(folder, file).in1 != folder.end()) continue;
+        const std::string stem = file.stem().string();
+        if (file.parent_path() != folder || (stem != "report" && stem != "results"))
+            throw Error(fmt::format("{}: results in the folder of an experiment are named report or results, as {}",
+                                    out.string(), (choice.folder / ("report" + out.extension().string())).string()));
+    }
+}
+
 int analyse(const AnalyseChoice& choice) {
-    check_result_files(choice.printed, {choice.folder / "experiment.json"});
+    check_result_files(choice.printed, {});
+    check_results_in_folder(choice);
     const analysis::ExperimentAnalysis analysis = analysis::analyse_experiment(choice.folder, choice.settings);
     analysis::write_bids(analysis, choice.folder);
     report::FoundExperiment found{&analysis, {}};

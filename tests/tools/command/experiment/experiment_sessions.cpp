@@ -234,8 +234,43 @@ TEST_CASE("an analysis is also written as the endings of -o ask, and refuses one
     CHECK(slurp(folder.path / "a.json") == slurp(folder.path / "data/results.json"));
     CHECK(fs::exists(folder.path / "data/report.html"));
     CHECK(folder.tactus(analyse + at(folder, "a.docx")).code == 2);
-    // The data of the experiment are no place for a result.
-    CHECK(folder.tactus(analyse + out + "/experiment.json").code == 2);
+    // One subject has no difference to draw: the figure is that of its answers.
+    for (const char* name : {"a.svg", "a.png"}) {
+        const Outcome figure = folder.tactus(analyse + at(folder, name));
+        CAPTURE(name, figure.err);
+        CHECK(figure.code == 0);
+        CHECK(fs::file_size(folder.path / name) > 1000);
+    }
+}
+
+TEST_CASE("an analysis replaces its own results in the folder of the data and nothing else") {
+    const Folder folder;
+    write_own(folder);
+    const std::string out = at(folder, "data");
+    REQUIRE(folder.tactus(run_own(folder, "--subject P01 --no-takes --out " + out)).code == 0);
+    const std::string analyse = fmt::format("experiment analyse {} --quiet --bootstrap 0 -o {}/", out, out);
+    for (const char* name : {"report.csv", "results.txt", "report.svg", "results.json"})
+        for (int time = 0; time < 2; ++time) {
+            const Outcome o = folder.tactus(analyse + name);
+            CAPTURE(name, o.err);
+            CHECK(o.code == 0);
+            CHECK(fs::exists(folder.path / "data" / name));
+        }
+    for (const char* name :
+         {"experiment.json", "frozen/orders.csv", "participants.json", "dataset_description.json", "sub-P01/new.csv",
+          "sub-P01/trial-0001/run/report.json", "new.svg", "frozen/report.html"}) {
+        const fs::path file = folder.path / "data" / name;
+        const std::string before = fs::exists(file) ? slurp(file) : "";
+        const Outcome o = folder.tactus(analyse + name);
+        CAPTURE(name, o.err);
+        CHECK(o.code == 2);
+        CHECK(o.err.find(name) != std::string::npos);
+        CHECK((fs::exists(file) ? slurp(file) : "") == before);
+    }
+    // A subject who withdraws is in no result that stays.
+    REQUIRE(folder.tactus(fmt::format("experiment withdraw {} --subject P01", out)).code == 0);
+    for (const char* name : {"report.csv", "results.txt", "report.svg", "results.json", "report.html"})
+        CHECK_FALSE(fs::exists(folder.path / "data" / name));
 }
 
 TEST_CASE("a second subject in the same folder at the same time is refused", "[slow]") {
