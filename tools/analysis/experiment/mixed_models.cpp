@@ -175,6 +175,11 @@ fit <- function(rows, a, b, level, before, fixed) {
     dropped <- setdiff(colnames(columns), names(fixef(model)))
     if (length(dropped) > 0)
       notes <- c(notes, paste("left out, since the orders do not separate it:", paste(dropped, collapse = ", ")))
+    # Numbers of a fit that did not converge mean nothing. A singular fit did.
+    failed <- grep("converge", unlist(model@optinfo$conv$lme4$messages), value = TRUE)
+    code <- model@optinfo$conv$opt
+    if (length(failed) == 0 && length(code) == 1 && code != 0) failed <- paste("the optimiser did not converge, code", code)
+    if (length(failed) > 0) stop("no numbers of this fit: ", paste(failed, collapse = "; "))
     one <- summary(model)$coefficients["effect", ]
     reach <- qt(0.975, one["df"]) * one["Std. Error"]
     spread <- as.data.frame(VarCorr(model))
