@@ -325,9 +325,9 @@ private:
             for (const toml::node& one : list(*node, 1, 50)) method.slopes.push_back(number(one, 1e-3, 1e6));
             if (std::ranges::adjacent_find(method.slopes, std::greater_equal<>{}) != method.slopes.end())
                 fail(*node, "slopes must ascend");
-        } else if (!stimulus.is_log) {
-            // Slopes are per unit of the axis: from a rise over a quarter of the range to one over the whole.
-            for (double& slope : method.slopes) slope *= 4.0 / (stimulus.max - stimulus.min);
+        } else {
+            method.slopes =
+                psychophysics::usual_slopes(method.form, stimulus.is_log ? 1.0 : stimulus.max - stimulus.min);
         }
         const std::string level_unit = stimulus.level_unit();
         if (method.kind == Method::Kind::constant) {

@@ -79,7 +79,7 @@ struct Method {
     std::vector<double> levels;  ///< constant
     psychophysics::StaircaseRule rule;  ///< steps on the axis of the stimulus
     psychophysics::Form form = psychophysics::Form::weibull;
-    std::vector<double> slopes{1.0, 2.0, 3.5, 5.0};
+    std::vector<double> slopes;  ///< at which QUEST+ expects the function; the prior of the analysis spans them
     double lapse = 0.02;
     double target = 0.75;  ///< the threshold that is reported: level with this probability
 };

@@ -10,6 +10,18 @@
 
 namespace tactus::psychophysics {
 
+PosteriorSettings threshold_prior(Form form, double guess, double lapse, std::span<const double> slopes, double low,
+                                  double high) {
+    constexpr int count = 8;
+    constexpr double beyond = 4.0;
+    if (slopes.empty()) throw Error("a threshold needs at least one slope");
+    PosteriorSettings settings{form, guess, lapse, {}, low - 0.5 * (high - low), high + 0.5 * (high - low)};
+    const double ratio = beyond * slopes.back() / slopes.front();
+    for (int i = 0; i < count; ++i)
+        settings.slopes.push_back(slopes.front() * std::pow(ratio, static_cast<double>(i) / (count - 1)));
+    return settings;
+}
+
 PosteriorLevel posterior_level(std::span<const LevelCount> counts, const PosteriorSettings& settings, double p,
                                double confidence) {
     constexpr std::size_t cells = 600;

@@ -30,4 +30,14 @@ double Psychometric::level_of(double p) const {
     return 0.0;
 }
 
+std::vector<double> usual_slopes(Form form, double scale) {
+    const auto width_of = [](Form one) {
+        const Psychometric unit{one, 0.0, 1.0, 0.0, 0.0};
+        return unit.level_of(0.75) - unit.level_of(0.25);
+    };
+    std::vector<double> slopes{1.0, 2.0, 3.5, 5.0};  // exponents of a Weibull function
+    for (double& slope : slopes) slope *= width_of(form) / (width_of(Form::weibull) * scale);
+    return slopes;
+}
+
 }  // namespace tactus::psychophysics

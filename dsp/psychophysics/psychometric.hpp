@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 namespace tactus::psychophysics {
 
@@ -24,5 +25,9 @@ struct Psychometric {
     /// Level at which P is `p`; NaN outside of (guess, 1 − lapse).
     double level_of(double p) const;
 };
+
+/// Four slopes from shallow to steep, for a prior: F rises from 25 to 75 % within 0.68, 0.34, 0.20 and 0.14 of `scale`, in every
+/// form. `scale`: a decade on an axis of logarithms, the range of the stimulus on a linear one.
+std::vector<double> usual_slopes(Form form, double scale = 1.0);
 
 }  // namespace tactus::psychophysics

@@ -16,6 +16,7 @@
 #include "tools/run/scratch_folder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -135,12 +136,15 @@ struct MethodErrors {
     std::vector<std::vector<double>> quest, stairs;
 };
 constexpr std::array<int, 6> trial_counts{20, 30, 40, 60, 80, 120};
+constexpr std::array<double, 3> true_slopes{2.0, 3.0, 5.0};  // of one observer after another
+constexpr std::size_t judged = 3;  // of trial_counts: a session
+double true_slope(int observer) { return true_slopes[static_cast<std::size_t>(observer) % true_slopes.size()]; }
 
 psychophysics::QuestSettings wide_prior() {
     psychophysics::QuestSettings settings;
     for (int i = 0; i <= 80; ++i) settings.thresholds.push_back(-0.8 + 0.02 * i);  // 1.6 decades
     for (int i = 0; i <= 40; ++i) settings.levels.push_back(-1.0 + 0.05 * i);
-    settings.slopes = {1.5, 2.5, 4.0, 6.0};
+    settings.slopes = psychophysics::usual_slopes(settings.form);
     return settings;
 }
 
@@ -155,10 +159,10 @@ psychophysics::StaircaseRule two_down_one_up() {
     return rule;
 }
 
-/// That of the analysis of an experiment.
 psychophysics::PosteriorSettings posterior_settings() {
     const psychophysics::StaircaseRule rule = two_down_one_up();
-    return {psychophysics::Form::weibull, 0.5, 0.02, wide_prior().slopes, rule.min, rule.max};
+    const psychophysics::Form form = psychophysics::Form::weibull;
+    return psychophysics::threshold_prior(form, 0.5, 0.02, psychophysics::usual_slopes(form), rule.min, rule.max);
 }
 
 MethodErrors adaptive_errors(int observers) {
@@ -169,7 +173,7 @@ MethodErrors adaptive_errors(int observers) {
     for (int o = 0; o < observers; ++o) {
         const auto seed = static_cast<std::uint64_t>(o);
         const double threshold = -0.5 + Random{mix(seed + 5)}.uniform(0);
-        const psychophysics::Psychometric truth{psychophysics::Form::weibull, threshold, 3.0, 0.5, 0.02};
+        const psychophysics::Psychometric truth{psychophysics::Form::weibull, threshold, true_slope(o), 0.5, 0.02};
         // Both are judged at the level about which this staircase settles.
         const double wanted = truth.level_of(rule.target());
         const auto run = [&](auto&& level_of, auto&& answer, std::uint64_t stream,
@@ -247,7 +251,7 @@ Covered covered_thresholds(int observers) {
     for (int o = 0; o < observers; ++o) {
         const auto seed = static_cast<std::uint64_t>(o);
         const psychophysics::Psychometric truth{psychophysics::Form::weibull, -0.5 + Random{mix(seed + 9)}.uniform(0),
-                                                3.0, 0.5, 0.02};
+                                                true_slope(o), 0.5, 0.02};
         const double p = rule.target(), wanted = truth.level_of(p);
         const auto count_covers = [&](auto&& level_of, auto&& answer, std::uint64_t stream, Coverage& coverage) {
             const Random random{mix(seed) ^ mix(stream)};
@@ -293,6 +297,13 @@ double bias_percent(const std::vector<double>& values) {
     return 100.0 * (std::pow(10.0, statistics::moments(values).mean) - 1.0);
 }
 
+/// Of the observers with one of the true slopes.
+double bias_percent(const std::vector<double>& errors, std::size_t slope) {
+    std::vector<double> own;
+    for (std::size_t o = slope; o < errors.size(); o += true_slopes.size()) own.push_back(errors[o]);
+    return bias_percent(own);
+}
+
 /// Trials with which QUEST+ has the error that the staircase has after `trial_counts[at]`, interpolated in logarithms.
 double trials_of_quest(const std::vector<double>& quest, double wanted) {
     for (std::size_t i = 0; i + 1 < quest.size(); ++i)
@@ -307,7 +318,7 @@ double trials_of_quest(const std::vector<double>& quest, double wanted) {
 /// Percent of trials saved at the error of a staircase of 60 trials: the value, and the lower bound of 95 % by a bootstrap over
 /// observers.
 std::pair<double, double> saved_trials(const MethodErrors& errors) {
-    constexpr std::size_t at = 3;
+    constexpr std::size_t at = judged;
     const std::size_t observers = errors.quest.front().size();
     const auto saved = [&](auto&& index) {
         std::vector<double> quest;
@@ -351,7 +362,7 @@ int bench_experiments(const ExperimentsChoice& choice) {
     const bool ok = std::ranges::all_of(rates, &Rate::ok) && saved_low >= 20.0 && between <= max_between_trials &&
                     bias < max_bias;
     if (choice.json) {
-        Json json{{"ok", ok}, {"rates", Json::array()}, {"adaptive", Json::array()}};
+        Json json{{"ok", ok}, {"rates", Json::array()}, {"adaptive", Json::array()}, {"slopes", Json::array()}};
         for (const Rate& rate : rates)
             json["rates"].push_back(
                 {{"name", rate.name}, {"percent", rate.percent}, {"low", rate.low}, {"high", rate.high}});
@@ -361,6 +372,10 @@ int bench_experiments(const ExperimentsChoice& choice) {
                                         {"quest_bias_percent", bias_percent(errors.quest[i])},
                                         {"staircase_rmse_log10", rms(errors.stairs[i])},
                                         {"staircase_bias_percent", bias_percent(errors.stairs[i])}});
+        for (std::size_t slope = 0; slope < true_slopes.size(); ++slope)
+            json["slopes"].push_back({{"slope", true_slopes[slope]},
+                                      {"quest_bias_percent", bias_percent(errors.quest[judged], slope)},
+                                      {"staircase_bias_percent", bias_percent(errors.stairs[judged], slope)}});
         json["max_bias_percent"] = bias;
         json["bootstrap_covers_percent"] = {{"constant", covered.constant.bootstrap},
                                             {"quest_plus", covered.quest.bootstrap},
@@ -380,16 +395,20 @@ int bench_experiments(const ExperimentsChoice& choice) {
         fmt::print("{:<58} {:>6.2f} %   {:.1f} to {:.1f}{}\n", rate.name, rate.percent, rate.low, rate.high,
                    rate.ok() ? "" : "  BEYOND");
     fmt::print(
-        "\n{} simulated observers, thresholds over 1 decade, prior of 1.6; two-alternative choice, medians of the "
-        "same posterior\n{:>7} "
+        "\n{} simulated observers, thresholds over 1 decade, slopes {}; prior of QUEST+ 1.6 decades, of the median 6; "
+        "two-alternative choice\n{:>7} "
         "{:>22} {:>26}\n",
-        choice.observers, "trials", "QUEST+ rmse, bias", "2-down 1-up rmse, bias");
+        choice.observers, fmt::join(true_slopes, ", "), "trials", "QUEST+ rmse, bias", "2-down 1-up rmse, bias");
     for (std::size_t i = 0; i < trial_counts.size(); ++i)
         fmt::print("{:>7} {:>13.4f} {:>+6.2f} % {:>17.4f} {:>+6.2f} %\n", trial_counts[i], rms(errors.quest[i]),
                    bias_percent(errors.quest[i]), rms(errors.stairs[i]), bias_percent(errors.stairs[i]));
+    for (std::size_t slope = 0; slope < true_slopes.size(); ++slope)
+        fmt::print("bias after {} trials of observers with a slope of {}: QUEST+ {:+.2f} %, staircase {:+.2f} %\n",
+                   trial_counts[judged], true_slopes[slope], bias_percent(errors.quest[judged], slope),
+                   bias_percent(errors.stairs[judged], slope));
     fmt::print(
         "QUEST+ needs {:.0f} % fewer trials than a staircase of {} (at least {:.0f} %, one-sided bound of 95 %)\n",
-        saved, trial_counts[3], saved_low);
+        saved, trial_counts[judged], saved_low);
     fmt::print("largest bias from {} trials on: {:.2f} %   below {:.0f} %{}\n", biased_below, bias, max_bias,
                bias < max_bias ? "" : "  BEYOND");
     fmt::print("\nintervals of 95 % after {} trials that cover, {} observers\n{:<18} {:>11} {:>11}\n", trial_counts.back(),
@@ -416,7 +435,7 @@ Verb experiments_verb() {
             verb.add("--studies", choice->studies, "simulated studies").range(100, 1'000'000).shows_default();
             verb.add("--subjects", choice->subjects, "of a study").range(4, 20).shows_default();
             verb.add("--observers", choice->observers, "of each adaptive method").range(20, 100'000).shows_default();
-            verb.add("--intervals", choice->intervals, "observers whose thresholds get a bootstrap interval")
+            verb.add("--intervals", choice->intervals, "observers whose thresholds get intervals by the bootstrap and by the posterior")
                 .range(10, 100'000)
                 .shows_default();
             verb.flag("--json", choice->json, "as JSON");

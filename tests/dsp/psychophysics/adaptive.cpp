@@ -8,6 +8,7 @@
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
 #include <cmath>
 #include <type_traits>
 #include <vector>
@@ -21,7 +22,7 @@ QuestSettings quest_settings() {
     QuestSettings settings;
     for (int i = 0; i <= 80; ++i) settings.thresholds.push_back(-0.8 + 0.02 * i);  // 1.6 decades
     for (int i = 0; i <= 40; ++i) settings.levels.push_back(-1.0 + 0.05 * i);
-    settings.slopes = {1.5, 2.5, 4.0, 6.0};
+    settings.slopes = usual_slopes(Form::weibull);
     return settings;
 }
 
@@ -166,13 +167,17 @@ TEST_CASE("each reversal halves the first steps of a staircase down to the final
 TEST_CASE("staircases and QUEST+ find random thresholds off the grid without bias, and their intervals cover them",
           "[slow]") {
     constexpr int subjects = 300;
+    constexpr std::array slopes{2.0, 3.0, 5.0};
+    std::array<double, slopes.size()> slope_error{};  // of the staircase
     double quest_error = 0.0, stairs_error = 0.0, stairs_square = 0.0;
     int quest_covers = 0, stairs_covers = 0;
-    const PosteriorSettings settings{Form::weibull, 0.5, 0.02, quest_settings().slopes, -1.5, 1.5};
+    const PosteriorSettings settings =
+        threshold_prior(Form::weibull, 0.5, 0.02, usual_slopes(Form::weibull), two_down().min, two_down().max);
     for (int subject = 0; subject < subjects; ++subject) {
         const Random where{static_cast<std::uint64_t>(500 + subject)};
         const double threshold = -0.5 + where.uniform(0);
-        Observer observer{{Form::weibull, threshold, 3.0, 0.5, 0.02}, Random{static_cast<std::uint64_t>(subject)}};
+        const std::size_t slope = static_cast<std::size_t>(subject) % slopes.size();
+        Observer observer{{Form::weibull, threshold, slopes[slope], 0.5, 0.02}, Random{static_cast<std::uint64_t>(subject)}};
         const StaircaseRule rule = two_down();
         const double wanted = observer.function.level_of(rule.target());
         const auto error_of = [&](auto& method, int& covers) {
@@ -193,6 +198,7 @@ TEST_CASE("staircases and QUEST+ find random thresholds off the grid without bia
         Staircase stairs(rule);
         const double error = error_of(stairs, stairs_covers);
         stairs_error += error;
+        slope_error[slope] += error * slopes.size() / subjects;
         stairs_square += error * error;
     }
     // After 60 trials: 2 % of the threshold is 0.0086 in log10.
@@ -202,6 +208,25 @@ TEST_CASE("staircases and QUEST+ find random thresholds off the grid without bia
     CHECK(std::sqrt(stairs_square / subjects) < 0.08);
     CHECK(quest_covers >= 0.93 * subjects);
     CHECK(stairs_covers >= 0.93 * subjects);
+}
+
+TEST_CASE("usual slopes have the same widths in each form, and the prior of the analysis spans more") {
+    for (const double scale : {1.0, 3.5})
+        for (const Form form : {Form::weibull, Form::logistic, Form::normal}) {
+            const std::vector<double> slopes = usual_slopes(form, scale);
+            REQUIRE(slopes.size() == 4);
+            constexpr std::array widths{0.683, 0.342, 0.195, 0.137};
+            for (std::size_t i = 0; i < widths.size(); ++i) {
+                const Psychometric function{form, 0.0, slopes[i], 0.0, 0.0};
+                CHECK((function.level_of(0.75) - function.level_of(0.25)) / scale == Approx(widths[i]).epsilon(0.005));
+            }
+            const PosteriorSettings prior = threshold_prior(form, 0.5, 0.02, slopes, -1.0, 0.0);
+            CHECK(prior.low == -1.5);
+            CHECK(prior.high == 0.5);
+            CHECK(prior.slopes.front() == Approx(slopes.front()));
+            CHECK(prior.slopes.back() == Approx(4.0 * slopes.back()));
+        }
+    CHECK_THROWS_AS(threshold_prior(Form::weibull, 0.5, 0.02, {}, -1.0, 0.0), Error);
 }
 
 TEST_CASE("the posterior of a level is that of brute force, and refuses what has none") {
