@@ -73,15 +73,18 @@ struct Estimate {
     std::optional<psychophysics::Interval> interval;
     std::optional<psychophysics::AdjustedLevel> adjusted;
     std::string problem;
+    Beyond beyond = Beyond::no;
 };
 
-/// Whether the device or the range ends here: what the subject would have chosen may lie beyond.
-bool is_end_of_range(const experiment::Stimulus& stimulus, double level) {
+/// The end of the range at which a match lies: the matching level may lie beyond it.
+Beyond end_of_range(const experiment::Stimulus& stimulus, double level) {
     const double low = stimulus.axis(stimulus.presentable(stimulus.min)),
                  high = stimulus.axis(stimulus.presentable(stimulus.max)), axis = stimulus.axis(level),
                  near = 1e-9 * (high - low);
-    return axis <= low + near || axis >= high - near;
+    return axis <= low + near ? Beyond::below : axis >= high - near ? Beyond::above : Beyond::no;
 }
+
+Beyond both(Beyond a, Beyond b) { return a == Beyond::no || a == b ? b : b == Beyond::no ? a : Beyond::unknown; }
 
 Estimate adjusted_in(const Protocol& protocol, const std::vector<TrialRecord>& records, const std::string& condition,
                      bool with_marked) {
@@ -93,16 +96,21 @@ Estimate adjusted_in(const Protocol& protocol, const std::vector<TrialRecord>& r
         if (!is_data(trial) || trial.condition != condition || !trial.match) continue;
         if (!with_marked && !trial.marked.empty()) continue;
         matches.push_back(protocol.stimulus->axis(*trial.match));
-        censored += is_end_of_range(*protocol.stimulus, *trial.match) ? 1 : 0;
+        const Beyond end = end_of_range(*protocol.stimulus, *trial.match);
+        censored += end != Beyond::no ? 1 : 0;
+        result.beyond = both(result.beyond, end);
         began_above.push_back(protocol.begins_above(trial.level));
     }
     result.adjusted = psychophysics::adjusted_level(matches, began_above);
-    if (!result.adjusted)
-        result.problem = fmt::format("{} matches: too few from below or from above", matches.size());
-    else if (censored > 0)
-        result.problem = fmt::format("{} of {} matches are at an end of the range: what matches may lie beyond it",
+    if (censored > 0)
+        result.problem = fmt::format("{} of {} matches are at an end of the range: the matching level may lie beyond it",
                                      censored, matches.size());
-    if (!result.problem.empty()) return result;
+    else if (!result.adjusted)
+        result.problem = fmt::format("{} matches: too few from below or from above", matches.size());
+    if (!result.problem.empty()) {
+        result.adjusted.reset();
+        return result;
+    }
     result.axis = result.adjusted->match;
     result.interval = result.adjusted->interval;
     return result;
@@ -116,24 +124,31 @@ Estimate estimate_of(const Protocol& protocol, const std::vector<psychophysics::
     const double low = stimulus.axis(stimulus.min), high = stimulus.axis(stimulus.max),
                  target = protocol.method.target;
     Estimate result;
+    if (!(target > settings.guess)) {
+        result.problem = fmt::format("the rate of false alarms, {:.3g}, is not below the target, {:.3g}: no level has it",
+                                     settings.guess, target);
+        result.beyond = Beyond::unknown;
+        return result;
+    }
+    const auto posterior = psychophysics::posterior_level(
+        counts,
+        psychophysics::threshold_prior(settings.form, settings.guess, protocol.method.lapse, protocol.method.slopes, low,
+                                       high),
+        target);
+    const auto side_of = [&](double at) { return at <= low ? Beyond::below : at >= high ? Beyond::above : Beyond::no; };
     double axis = fit.function.level_of(target);
     if (!fit.is_identified || !std::isfinite(axis)) {
         result.problem = "the answers do not exclude that it lies beyond all levels";
+        result.beyond = side_of(posterior.median);
+        if (result.beyond == Beyond::no) result.beyond = Beyond::unknown;
         return result;
     }
     const bool is_adaptive = protocol.method.kind != experiment::Method::Kind::constant;
     if (is_adaptive) {
-        // The prior reaches beyond the range, so that its ends do not attract the estimate.
-        const double beyond = 0.5 * (high - low);
-        const auto level =
-            psychophysics::posterior_level(counts,
-                                           {settings.form, settings.guess, protocol.method.lapse,
-                                            protocol.method.slopes, low - beyond, high + beyond},
-                                           target);
-        axis = level.median;
-        result.interval = level.interval;
+        axis = posterior.median;
+        result.interval = posterior.interval;
     }
-    if (!(axis > low && axis < high)) {
+    if (result.beyond = side_of(axis); result.beyond != Beyond::no) {
         result.interval.reset();
         result.problem = "the answers place it at or beyond an end of the range";
         return result;
@@ -151,9 +166,14 @@ Estimate estimate_of(const Protocol& protocol, const std::vector<psychophysics::
 void set_estimate(const Protocol& protocol, const Estimate& estimate, SubjectThreshold& threshold) {
     const auto level = [&](double axis) { return protocol.stimulus->level_at(axis); };
     threshold.problem = estimate.problem;
+    threshold.beyond = estimate.beyond;
     threshold.adjusted = estimate.adjusted;
     if (estimate.axis) threshold.threshold = level(*estimate.axis);
-    if (estimate.interval) threshold.interval = {level(estimate.interval->low), level(estimate.interval->high)};
+    if (!estimate.interval) return;
+    const auto [low, high] = *estimate.interval;
+    threshold.interval = {level(low), level(high)};
+    threshold.is_low_beyond = low < protocol.stimulus->axis(protocol.stimulus->min);
+    threshold.is_high_beyond = high > protocol.stimulus->axis(protocol.stimulus->max);
 }
 
 SubjectThreshold analyse_adjustment(const Protocol& protocol, const AnalysedSubject& subject,
@@ -196,6 +216,7 @@ SubjectThreshold analyse_condition(const Protocol& protocol, const AnalysedSubje
             result.with_marked = protocol.stimulus->level_at(*estimate.axis);
     } else {
         result.problem = "there are answers at fewer than two levels";
+        if (!result.counts.empty()) result.beyond = Beyond::unknown;
     }
     if (protocol.response.kind == ResponseKind::yes_no && answers.signals > 0.0 && answers.noises > 0.0) {
         const auto detection =
@@ -277,6 +298,42 @@ std::optional<double> mean_over(const Protocol& protocol, const AnalysedSubject&
     return sum / static_cast<double>(names.size());
 }
 
+/// Side of a subject's value in a condition.
+Beyond beyond_of(const AnalysedSubject& subject, const std::string& condition) {
+    for (const SubjectThreshold& one : subject.thresholds)
+        if (one.condition == condition) return one.beyond;
+    return Beyond::no;
+}
+
+/// As mean_over, with the end of the range in place of a value beyond it, and the side on which the mean lies of that.
+struct BoundedMean {
+    double value = 0.0;
+    Beyond beyond = Beyond::no;
+};
+std::optional<BoundedMean> bounded_mean(const Protocol& protocol, const AnalysedSubject& subject,
+                                        const experiment::Comparison& comparison, const std::string& level) {
+    BoundedMean mean;
+    const std::vector<std::string> names = conditions_of(protocol, comparison, level);
+    if (names.empty()) return std::nullopt;
+    for (const std::string& name : names) {
+        std::optional<double> value = value_of(protocol, subject, comparison.task, comparison.measure, name);
+        if (!value) {
+            const Beyond side = beyond_of(subject, name);
+            if (side == Beyond::no) return std::nullopt;
+            mean.beyond = both(mean.beyond, side);
+            const double end = side == Beyond::below ? protocol.stimulus->min : protocol.stimulus->max;
+            value = protocol.stimulus->is_log ? std::log(end) : end;
+        }
+        mean.value += *value / static_cast<double>(names.size());
+    }
+    return mean;
+}
+
+/// Side of a difference b - a.
+Beyond side_of_difference(Beyond a, Beyond b) {
+    return both(b, a == Beyond::below ? Beyond::above : a == Beyond::above ? Beyond::below : a);
+}
+
 /// Mean place of the level's conditions in the subject's order.
 double place_of(const Protocol& protocol, std::size_t row, const experiment::Comparison& comparison,
                 const std::string& level) {
@@ -317,6 +374,8 @@ statistics::CarryOver carry_over_of(const ExperimentAnalysis& analysis, const ex
             if (const auto value = value_of(protocol, subject, comparison.task, comparison.measure,
                                             protocol.conditions[order[period]].name))
                 own.push_back({subjects, period, order[period], *value, period == 0 ? 0.0 : left[order[period - 1]]});
+        if (std::ranges::any_of(subject.thresholds, [](const SubjectThreshold& t) { return t.beyond != Beyond::no; }))
+            throw Error(fmt::format("a value of {} lies beyond the range", subject.entry.pseudonym));
         if (own.size() != count) continue;  // as the paired tests: subjects with all values
         values.insert(values.end(), own.begin(), own.end());
         ++subjects;
@@ -335,6 +394,10 @@ std::optional<statistics::PairedTest> other_test(const ExperimentAnalysis& analy
         const auto a = mean_over(analysis.protocol, subject, comparison, comparison.a, Marked::other),
                    b = mean_over(analysis.protocol, subject, comparison, comparison.b, Marked::other);
         if (a && b) differences.push_back(*b - *a);
+        // With its marked trials a threshold may lie beyond the range: the others do not represent it.
+        else if (analysis.protocol.is_psychophysics() && mean_over(analysis.protocol, subject, comparison, comparison.a) &&
+                 mean_over(analysis.protocol, subject, comparison, comparison.b))
+            return std::nullopt;
     }
     if (marked == 0) return std::nullopt;
     try {
@@ -355,13 +418,21 @@ AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment:
                                comparison.within.empty() ? "" : fmt::format(" ({})", comparison.within));
     std::vector<bool> b_second;
     bool is_crossed = true;
+    double bounds = 0.0;
+    Beyond side = Beyond::no;
     for (const AnalysedSubject& subject : analysis.subjects) {
         if (!subject.excluded.empty()) continue;
-        const auto a = mean_over(protocol, subject, comparison, comparison.a),
-                   b = mean_over(protocol, subject, comparison, comparison.b);
+        const auto a = bounded_mean(protocol, subject, comparison, comparison.a),
+                   b = bounded_mean(protocol, subject, comparison, comparison.b);
         if (!a || !b) continue;
+        bounds += b->value - a->value;
+        if (a->beyond != Beyond::no || b->beyond != Beyond::no) {
+            ++result.beyond;
+            side = both(side, side_of_difference(a->beyond, b->beyond));
+            continue;
+        }
         result.subjects.push_back(subject.entry.pseudonym);
-        result.differences.push_back(*b - *a);
+        result.differences.push_back(b->value - a->value);
         const double place_a = place_of(protocol, subject.entry.row, comparison, comparison.a),
                      place_b = place_of(protocol, subject.entry.row, comparison, comparison.b);
         if (place_a == place_b) is_crossed = false;
@@ -370,6 +441,14 @@ AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment:
     const std::size_t n = result.differences.size();
     if (analysis.is_rehearsal && (comparison.factor == "mode" || comparison.factor == "display")) {
         result.problem = "a rehearsal: without a haptic device and a registered display nothing is tested";
+        return result;
+    }
+    if (result.beyond > 0) {
+        // Values are missing because they are large or small: a mean of the others would be biased.
+        const std::size_t all = n + result.beyond;
+        result.problem = fmt::format("{} of {} subjects have a value beyond an end of the range", result.beyond, all);
+        if (side != Beyond::unknown) result.bound = bounds / static_cast<double>(all);
+        result.is_lower_bound = side == Beyond::above;
         return result;
     }
     if (n < 2) {
@@ -407,11 +486,15 @@ AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment:
 
 GroupValue group_value(const ExperimentAnalysis& analysis, const std::string& task, const std::string& measure,
                        const std::string& condition) {
-    GroupValue group{task, measure, condition, is_log_measure(analysis.protocol, task, measure), 0, 0.0, 0.0, 0.0, 0};
+    GroupValue group{task, measure, condition, is_log_measure(analysis.protocol, task, measure)};
     std::vector<double> values;
     for (const AnalysedSubject& subject : analysis.subjects) {
         if (!subject.excluded.empty()) continue;
         if (const auto value = value_of(analysis.protocol, subject, task, measure, condition)) values.push_back(*value);
+        const Beyond side = beyond_of(subject, condition);
+        group.below += side == Beyond::below ? 1 : 0;
+        group.above += side == Beyond::above ? 1 : 0;
+        group.unknown += side == Beyond::unknown ? 1 : 0;
         group.marked += static_cast<std::size_t>(std::ranges::count_if(subject.records, [&](const TrialRecord& trial) {
             return is_data(trial) && !trial.marked.empty() && trial.task == task && trial.condition == condition;
         }));
@@ -561,6 +644,7 @@ TakeCheck check_takes(const fs::path& folder) {
 }
 
 std::string verdict_of(const AnalysedComparison& comparison, double alpha) {
+    if (comparison.beyond > 0) return "not judged";
     if (!comparison.test) return "not tested";
     const bool is_effect = comparison.adjusted_p < alpha;
     const bool is_equivalent =

@@ -21,6 +21,9 @@
 
 namespace tactus::analysis {
 
+/// Where a value lies that the range of the stimulus does not hold.
+enum class Beyond : std::uint8_t { no, below, above, unknown };
+
 /// Answers of a subject in a condition, fitted.
 struct SubjectThreshold {
     std::string condition;
@@ -28,11 +31,13 @@ struct SubjectThreshold {
     std::optional<psychophysics::PsychometricFit> fit;
     std::optional<double> threshold;  ///< level with the target probability; none: not identified
     std::string problem;  ///< why it is not identified
+    Beyond beyond = Beyond::no;  ///< of one that is not identified; no: answers are missing
     std::optional<double> with_marked;  ///< the same with the marked trials
     /// 95 %: constant stimuli by a parametric bootstrap, adaptive methods by the posterior.
     std::optional<psychophysics::Interval> interval;
+    bool is_low_beyond = false, is_high_beyond = false;  ///< that end of the interval lies beyond the range
     std::optional<double> d_prime, criterion;  ///< of yes/no tasks
-    std::optional<psychophysics::AdjustedLevel> adjusted;  ///< of adjustments: `threshold` is its match
+    std::optional<psychophysics::AdjustedLevel> adjusted;  ///< of identified matches: `threshold` is its match
     double max_level_error = 0.0;  ///< largest deviation of the rendered level from the wanted one, a fraction
 };
 
@@ -57,6 +62,10 @@ struct AnalysedComparison {
     std::vector<std::string> subjects;
     std::vector<double> differences;  ///< b − a
     std::string problem;  ///< why there is no test; empty: there is one
+    std::size_t beyond = 0;  ///< subjects with a value beyond the range of the stimulus; above 0: not judged
+    /// Mean difference with the ends of the range in place of the values beyond them; none: their sides do not agree.
+    std::optional<double> bound;
+    bool is_lower_bound = false;  ///< the mean difference is at least `bound`; else at most
     std::optional<statistics::PairedTest> test;
     std::optional<statistics::PermutationTest> permutation;
     double adjusted_p = 1.0;  ///< Holm, over all comparisons that were tested
@@ -79,6 +88,10 @@ struct GroupValue {
     std::size_t count = 0;
     double mean = 0.0, low = 0.0, high = 0.0;
     std::size_t marked = 0;  ///< trials, of all included subjects
+    std::size_t below = 0, above = 0, unknown = 0;  ///< subjects beyond the range of the stimulus, not in `count`
+
+    /// Whether the mean lacks values because of their size: then it has no interval.
+    bool is_bound() const { return below + above + unknown > 0; }
 };
 
 struct ExperimentAnalysis {
@@ -119,7 +132,8 @@ TakeCheck check_takes(const std::filesystem::path& folder);
 /// participants.tsv and .json, dataset_description.json, and for each subject beh/*_beh.tsv with .json (BIDS 1.9).
 void write_bids(const ExperimentAnalysis& analysis, const std::filesystem::path& folder);
 
-/// "effect", "equivalent", "effect within the margin" or "inconclusive": never "no effect".
+/// "effect", "equivalent", "effect within the margin" or "inconclusive": never "no effect". "not judged" where values lie
+/// beyond the range of the stimulus, "not tested" without a test.
 std::string verdict_of(const AnalysedComparison& comparison, double alpha);
 
 }  // namespace tactus::analysis

@@ -143,6 +143,16 @@ const Fields<Compared>& comparison_fields() {
             .number("p", "", significant(4), tested([](const C& c) { return c.of->test->p; }))
             .number("p_permutation", "", significant(4), tested([](const C& c) { return c.of->permutation->p; }))
             .number("p_holm", "", significant(4), tested([](const C& c) { return c.of->adjusted_p; }))
+            .integer("beyond_range", "", [](const C& c) { return c.of->beyond; })
+            .number("at_least", "", significant(4),
+                    [](const C& c) {
+                        return c.of->is_lower_bound && c.of->bound ? std::optional(c.shown(*c.of->bound)) : std::nullopt;
+                    })
+            .number("at_most", "", significant(4),
+                    [](const C& c) {
+                        return !c.of->is_lower_bound && c.of->bound ? std::optional(c.shown(*c.of->bound))
+                                                                    : std::nullopt;
+                    })
             .number("effect_of_80_percent_power_sd", "", significant(4),
                     tested([](const C& c) { return c.of->detectable; }))
             .child("equivalence", "", equivalence_fields(),
@@ -157,8 +167,13 @@ const Fields<Compared>& comparison_fields() {
             .omitted()
             .text("", "difference (95 %)",
                   [](const C& c) {
-                      return c.is_tested() ? c.text(c.of->test->of.mean, c.of->test->low, c.of->test->high)
-                                           : "not tested: " + c.of->problem;
+                      if (c.is_tested()) return c.text(c.of->test->of.mean, c.of->test->low, c.of->test->high);
+                      if (c.of->beyond == 0) return "not tested: " + c.of->problem;
+                      const std::string bound =
+                          c.of->bound ? fmt::format("the difference is at {} {}", c.of->is_lower_bound ? "least" : "most",
+                                                    c.with_name(c.text(*c.of->bound)))
+                                      : "the difference has no bound";
+                      return fmt::format("not judged: {}: {}", c.of->problem, bound);
                   })
             .text("", "p", [](const C& c) { return c.is_tested() ? p_text(c.of->test->p) : std::string(); })
             .text("", "permutation",
@@ -219,11 +234,23 @@ struct Group {
     double factor = 1.0;
 };
 
+/// How many subjects the mean lacks because of the size of their values, and what it is then.
+std::string beyond_text(const GroupValue& group) {
+    if (!group.is_bound()) return {};
+    const bool is_lower = group.below + group.unknown == 0, is_upper = group.above + group.unknown == 0;
+    return fmt::format("{}{}", group.below + group.above + group.unknown,
+                       group.count == 0 ? ""
+                       : is_lower       ? ": the mean is a lower bound"
+                       : is_upper       ? ": the mean is an upper bound"
+                                        : ": the mean lacks them");
+}
+
 const Fields<Group>& group_fields() {
     using G = Group;
     const auto in_unit = [](double GroupValue::* member, std::size_t needed) {
         return [member, needed](const G& g) {
-            return g.of->count >= needed ? std::optional(g.of->*member / g.factor) : std::nullopt;
+            const bool is_shown = g.of->count >= needed && (needed < 2 || !g.of->is_bound());
+            return is_shown ? std::optional(g.of->*member / g.factor) : std::nullopt;
         };
     };
     static const Fields<G> all =
@@ -237,11 +264,15 @@ const Fields<Group>& group_fields() {
             .number("high", "", significant(4), in_unit(&GroupValue::high, 2))
             .text("", "95 %",
                   [](const G& g) {
-                      return g.of->count > 1
+                      return g.of->count > 1 && !g.of->is_bound()
                                  ? fmt::format("{:.4g} to {:.4g}", g.of->low / g.factor, g.of->high / g.factor)
                                  : std::string();
                   })
             .text("unit", "unit", [](const G& g) { return g.unit; })
+            .text("", "beyond the range", [](const G& g) { return beyond_text(*g.of); })
+            .integer("below_range", "", [](const G& g) { return g.of->below; })
+            .integer("above_range", "", [](const G& g) { return g.of->above; })
+            .integer("side_unknown", "", [](const G& g) { return g.of->unknown; })
             .integer("marked", "marked trials", [](const G& g) { return g.of->marked; })
             .flag("geometric", "", [](const G& g) { return g.of->is_log; });
     return all;
@@ -269,10 +300,20 @@ struct LevelOfSubject {
 };
 
 std::optional<double> low_of(const LevelOfSubject& t) {
-    return t.of->interval ? t.shown(t.of->interval->low) : std::nullopt;
+    return t.of->interval && !t.of->is_low_beyond ? t.shown(t.of->interval->low) : std::nullopt;
 }
 std::optional<double> high_of(const LevelOfSubject& t) {
-    return t.of->interval ? t.shown(t.of->interval->high) : std::nullopt;
+    return t.of->interval && !t.of->is_high_beyond ? t.shown(t.of->interval->high) : std::nullopt;
+}
+
+/// "0.2 to 0.4"; an end beyond the range comes from the prior, and has no number.
+std::string interval_text(const LevelOfSubject& t) {
+    if (!t.of->interval) return {};
+    const auto end = [&](const std::optional<double>& level, double limit) {
+        return level ? fmt::format("{:.4g}", *level) : fmt::format("beyond {:.4g}", *t.shown(limit));
+    };
+    return fmt::format("{} to {}", end(low_of(t), t.protocol->stimulus->min),
+                       end(high_of(t), t.protocol->stimulus->max));
 }
 
 const Fields<LevelOfSubject>& subject_level_fields() {
@@ -289,10 +330,9 @@ const Fields<LevelOfSubject>& subject_level_fields() {
                   })
             .number("low", "", significant(4), low_of)
             .number("high", "", significant(4), high_of)
-            .text("", "95 %",
-                  [](const T& t) {
-                      return t.of->interval ? fmt::format("{:.4g} to {:.4g}", *low_of(t), *high_of(t)) : std::string();
-                  })
+            .flag("low_beyond_range", "", [](const T& t) { return t.of->is_low_beyond; })
+            .flag("high_beyond_range", "", [](const T& t) { return t.of->is_high_beyond; })
+            .text("", "95 %", interval_text)
             .number("with_marked", "with marked trials", significant(4),
                     [](const T& t) { return t.shown(t.of->with_marked); })
             .number("slope", "slope", significant(3),
@@ -305,7 +345,7 @@ const Fields<LevelOfSubject>& subject_level_fields() {
                     [](const T& t) { return t.match(&AdjustedLevel::above); })
             .number("match_deviation", "deviation", significant(3), [](const T& t) { return t.deviation(); })
             .number("max_level_error", "", significant(3), [](const T& t) { return t.of->max_level_error; })
-            .text("problem", "why", [](const T& t) { return t.of->problem; });
+            .text("problem", "problem", [](const T& t) { return t.of->problem; });
     return all;
 }
 
@@ -477,8 +517,17 @@ std::vector<std::string> meanings_of(const FoundExperiment& f) {
                 ? "Maximum of the likelihood; intervals: parametric bootstrap."
                 : "Median of the posterior, intervals: its quantiles. The prior is uniform over the axis and over the "
                   "slopes of the protocol; the posterior does not depend on the rule that chose the levels."));
-    if (f.mixed || std::ranges::any_of(f.analysis->comparisons,
-                                       [](const AnalysedComparison& one) { return one.carry_over.has_value(); })) {
+    const bool has_carry_over = std::ranges::any_of(
+        f.analysis->comparisons, [](const AnalysedComparison& one) { return one.carry_over.has_value(); });
+    if (f.mixed)
+        all.push_back(fmt::format(
+            "The mixed model uses {} of the conditions of its comparison, also of subjects who lack others{}. A carry-over "
+            "term is coded by the factor's level in the previous period and is 0 in the first.",
+            protocol.is_psychophysics() ? "one threshold of each subject" : "each trial",
+            protocol.is_psychophysics() ? ""
+                                        : ", and has the spread of the effect between subjects as a term of its own where "
+                                          "they have several trials of each level"));
+    if (f.mixed || has_carry_over) {
         all.insert(all.end(),
                    {"The paired test estimates the mean difference of the subjects that have a value in each of its "
                     "conditions; its error is the spread of this one difference. The adjustment for the period "
@@ -486,13 +535,10 @@ std::vector<std::string> meanings_of(const FoundExperiment& f) {
                     "The carry-over model is least squares on the same means of all conditions: subject + period + "
                     "condition + carry-over. Its error is one residual, pooled over all conditions and effects, with "
                     "more degrees of freedom; the spread of the effect between subjects is part of that residual.",
-                    "The mixed model uses each trial of the conditions of its comparison, also of subjects who lack "
-                    "others, and has the spread of the effect between subjects as a term of its own. Its carry-over "
-                    "term has a value for each level of the factor in the period before, and for none before the first.",
-                    "The three agree for complete, balanced data without carry-over. They differ where subjects lack "
-                    "values, orders are not balanced, numbers of trials differ, or the spread of this difference is "
-                    "not that of the others. Where they lead to different verdicts, the paired test is the one that "
-                    "the protocol states beforehand."});
+                    "Without carry-over their expectations agree for complete, balanced data; the estimates of one study "
+                    "need not. They differ more where subjects lack values, orders are not balanced, or the spread of "
+                    "this difference is not that of the others. If they lead to different verdicts, the paired test is "
+                    "the one that the protocol states beforehand."});
     }
     return all;
 }

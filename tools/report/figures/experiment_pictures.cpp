@@ -181,8 +181,9 @@ display::Figure draw_group(const analysis::ExperimentAnalysis& analysis, const s
                     display::TextAnchor::middle);
         if (groups[g]->count == 0) continue;
         const display::Colour colour = curve_colours[1];
-        figure.line({axes.at(x + 0.18, groups[g]->low / factor), axes.at(x + 0.18, groups[g]->high / factor)}, colour,
-                    1.5);
+        if (!groups[g]->is_bound())
+            figure.line({axes.at(x + 0.18, groups[g]->low / factor), axes.at(x + 0.18, groups[g]->high / factor)},
+                        colour, 1.5);
         draw_dot(figure, axes.at(x + 0.18, groups[g]->mean / factor), 3.5, colour);
     }
     for (const auto& [g, value] : dots)

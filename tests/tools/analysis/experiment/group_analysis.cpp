@@ -9,6 +9,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
+#include "dsp/psychophysics/posterior.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
@@ -300,8 +301,11 @@ TEST_CASE("mixed models take levels as text, and note what lme4 warns of and wha
     for (std::size_t i = 0; i < named.models.size(); ++i) {
         const MixedModel& one = named.models[i];
         CAPTURE(one.label, one.formula, one.note);
-        REQUIRE(one.effect);
-        if (one.label.find("cube distance") == 0) CHECK(one.note.find("converge") != std::string::npos);
+        // A fit that did not converge has no numbers.
+        const bool is_failed = one.label.find("cube distance") == 0;
+        REQUIRE(one.effect.has_value() == !is_failed);
+        CHECK(one.p.has_value() == !is_failed);
+        if (is_failed) CHECK(one.note.find("no numbers of this fit: ") != std::string::npos);
         else CHECK(*one.effect == Approx(analysis.comparisons[i].test->of.mean).epsilon(0.05).margin(0.05));
     }
     // Each period is one condition: nothing tells them apart.
@@ -461,13 +465,38 @@ TEST_CASE("matches and thresholds at an end of the range are not identified, wit
             analysis_of_trials(scratch.path() / fmt::format("stuck{}", end), "intensity", matches(end));
         for (const SubjectThreshold& one : stuck.subjects.front().thresholds) {
             CHECK(one.threshold.has_value() == (one.condition != "f320"));
-            CHECK(one.adjusted);
-            if (one.condition == "f320")
-                CHECK(one.problem == "1 of 8 matches are at an end of the range: what matches may lie beyond it");
+            CHECK(one.adjusted.has_value() == (one.condition != "f320"));
+            if (one.condition == "f320") {
+                CHECK(one.problem ==
+                      "1 of 8 matches are at an end of the range: the matching level may lie beyond it");
+                CHECK(one.beyond == (end > 0.1 ? Beyond::above : Beyond::below));
+            }
         }
-        for (const AnalysedComparison& one : stuck.comparisons) CHECK(verdict_of(one, 0.05) == "not tested");
+        REQUIRE_FALSE(stuck.comparisons.empty());
+        for (const AnalysedComparison& one : stuck.comparisons) {
+            REQUIRE(one.of.a == "320 Hz");
+            CHECK(verdict_of(one, 0.05) == "not judged");
+            CHECK_FALSE(one.test);
+            CHECK(one.beyond == 2);
+            CHECK(one.problem == "2 of 2 subjects have a value beyond an end of the range");
+            // The difference to the end of the range: the matching level lies there or beyond.
+            const double level = end > 0.1 ? stuck.protocol.stimulus->max : stuck.protocol.stimulus->min;
+            REQUIRE(one.bound);
+            CHECK(*one.bound == Approx(std::log(0.05 / level)).margin(0.01));
+            CHECK(one.is_lower_bound == (end < 0.1));
+        }
+        for (const GroupValue& one : stuck.groups) {
+            CHECK(one.above == (one.condition == "f320" && end > 0.1 ? 2 : 0));
+            CHECK(one.below == (one.condition == "f320" && end < 0.1 ? 2 : 0));
+            CHECK(one.count == (one.condition == "f320" ? 0 : 2));
+        }
         const std::string text = report::text_of(report::experiment_fields().of(report::FoundExperiment{&stuck, {}}));
         CHECK(text.find("P01 in 'f320': not identified: 1 of 8 matches") != std::string::npos);
+        CHECK(text.find(end < 0.1 ? "the difference is at least" : "the difference is at most") != std::string::npos);
+        const file::Json shown =
+            report::output_json(report::experiment_fields().of(report::FoundExperiment{&stuck, {}}));
+        for (const auto& one : shown["thresholds"])
+            CHECK(one["from_below"].is_null() == (one["condition"].get<std::string>() == "f320"));
     }
     // A staircase and QUEST+ that stay at the greatest level.
     for (const char* name : {"vibration", "stiffness"}) {
@@ -505,6 +534,101 @@ TEST_CASE("a threshold that answers place beyond the range of its stimulus is no
     }
 }
 
+TEST_CASE("thresholds of a staircase and of QUEST+ are those of the answers, at the target of the protocol") {
+    const run::ScratchFolder scratch;
+    for (const char* name : {"vibration", "stiffness"})
+        for (const double slope : {2.0, 5.0}) {
+            psychophysics::Psychometric truth{psychophysics::Form::weibull, 0.0, slope, 0.5, 0.02};
+            std::vector<double> levels;
+            std::vector<bool> correct;
+            const ExperimentAnalysis analysis = analysis_of_trials(
+                scratch.path() / fmt::format("{}{}", name, slope), name,
+                [&](const experiment::Protocol& protocol, int i, TrialRecord& trial) {
+                    const experiment::Stimulus& stimulus = *protocol.stimulus;
+                    truth.threshold = 0.5 * (stimulus.axis(stimulus.min) + stimulus.axis(stimulus.max));
+                    if (i == 0) levels.clear(), correct.clear();
+                    // Twenty answers at each of ten levels, as many correct as the function states.
+                    trial.level = stimulus.level_at(truth.threshold - 0.35 + 0.06 * (i % 10));
+                    trial.is_correct = i / 10 < std::lround(20.0 * truth.at(stimulus.axis(trial.level)));
+                    levels.push_back(stimulus.axis(trial.level));
+                    correct.push_back(trial.is_correct);
+                    return true;
+                });
+            const experiment::Protocol& protocol = analysis.protocol;
+            const experiment::Stimulus& stimulus = *protocol.stimulus;
+            const double target = name == std::string("vibration") ? 0.794 : 0.75, low = stimulus.axis(stimulus.min),
+                         high = stimulus.axis(stimulus.max), half = 0.5 * (high - low);
+            psychophysics::PosteriorSettings prior{truth.form, 0.5, 0.02, {}, low - half, high + half};
+            for (int i = 0; i < 8; ++i) prior.slopes.push_back(std::pow(20.0, i / 7.0));
+            const auto wanted =
+                psychophysics::posterior_level(psychophysics::count_levels(levels, correct), prior, target);
+            const SubjectThreshold& one = analysis.subjects.front().thresholds.front();
+            CAPTURE(name, slope, one.problem);
+            REQUIRE(one.threshold);
+            REQUIRE(one.interval);
+            CHECK(stimulus.axis(*one.threshold) == Approx(truth.level_of(target)).margin(0.025));
+            CHECK(stimulus.axis(*one.threshold) == Approx(wanted.median).margin(1e-9));
+            CHECK(stimulus.axis(one.interval->low) == Approx(wanted.interval.low).margin(1e-9));
+            CHECK(stimulus.axis(one.interval->high) == Approx(wanted.interval.high).margin(1e-9));
+            CHECK_FALSE(one.is_low_beyond);
+            CHECK_FALSE(one.is_high_beyond);
+        }
+}
+
+TEST_CASE("an end of an interval beyond the range of the stimulus has a flag in place of a number") {
+    const run::ScratchFolder scratch;
+    // Ten answers of each level, three quarters correct at 0.7 of the greatest: the data do not end the interval below it.
+    const ExperimentAnalysis analysis = analysis_of_trials(
+        scratch.path() / "data", "stiffness", [](const experiment::Protocol& protocol, int i, TrialRecord& trial) {
+            trial.level = protocol.stimulus->max * (i % 2 == 0 ? 1.0 : 0.4);
+            trial.is_correct = i % 2 == 0 ? i % 10 != 0 : i % 4 == 1;
+            return i < 20;
+        });
+    const SubjectThreshold& one = analysis.subjects.front().thresholds.front();
+    CAPTURE(one.problem);
+    REQUIRE(one.threshold);
+    REQUIRE(one.interval);
+    CHECK(one.is_high_beyond);
+    CHECK_FALSE(one.is_low_beyond);
+    const report::Result result = report::experiment_fields().of(report::FoundExperiment{&analysis, {}});
+    const file::Json shown = report::output_json(result)["thresholds"][0];
+    CHECK(shown["high"].is_null());
+    CHECK(shown["high_beyond_range"].get<bool>());
+    CHECK_FALSE(shown["low"].is_null());
+    CHECK_FALSE(shown["low_beyond_range"].get<bool>());
+    CHECK(report::text_of(result).find(" to beyond 1") != std::string::npos);
+}
+
+TEST_CASE("false alarms as frequent as the target leave no level, which the reason states") {
+    const run::ScratchFolder scratch;
+    const fs::path data = scratch.path() / "data";
+    analysis_of_trials(data, "stiffness", [](const experiment::Protocol& protocol, int i, TrialRecord& trial) {
+        trial.interval = i % 2;
+        trial.level = trial.interval == 0 ? 0.0 : protocol.stimulus->max * (i % 4 == 1 ? 1.0 : 0.1);
+        trial.answer = i % 10 == 0 ? 0 : 1;  // "yes" to eight of ten trials without the stimulus
+        trial.is_correct = trial.answer == trial.interval;
+        return true;
+    });
+    // The same trials as those of a yes/no task.
+    const fs::path frozen = data / "frozen/stiffness.toml";
+    std::string text = file::read_whole_file(frozen);
+    for (const auto& [from, to] : {std::pair<std::string, std::string>{"[\"first.stiffness\", \"second.stiffness\"]",
+                                                                       "[\"second.stiffness\"]"},
+                                   {"[[\"0 s\", \"2 s\"], [\"2 s\", \"4 s\"]]", "[[\"2 s\", \"4 s\"]]"},
+                                   {"kind  = \"choice\"", "kind  = \"yes_no\""},
+                                   {"names = [\"first\", \"second\"]", "names = [\"no\", \"yes\"]"}}) {
+        REQUIRE(text.find(from) != std::string::npos);
+        text.replace(text.find(from), from.size(), to);
+    }
+    file::write_whole_file(frozen, text);
+    const ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0});
+    for (const SubjectThreshold& one : analysis.subjects.front().thresholds) {
+        CHECK_FALSE(one.threshold);
+        CHECK(one.problem == "the rate of false alarms, 0.797, is not below the target, 0.75: no level has it");
+        CHECK(one.beyond == Beyond::unknown);
+    }
+}
+
 TEST_CASE("a report with carry-over or mixed models explains what each estimates and why they differ") {
     const run::ScratchFolder scratch;
     const fs::path data = scratch.path() / "data";
@@ -513,6 +637,7 @@ TEST_CASE("a report with carry-over or mixed models explains what each estimates
         const ExperimentAnalysis analysis = analyse_experiment(data, {.bootstrap = 0, .has_carry_over = has_all});
         const std::string page = report::html_of(report::experiment_fields().of(report::FoundExperiment{&analysis, {}}));
         CHECK((page.find("The carry-over model is least squares") != std::string::npos) == has_all);
-        CHECK((page.find("They differ where subjects lack values") != std::string::npos) == has_all);
+        CHECK((page.find("They differ more where subjects lack values") != std::string::npos) == has_all);
+        CHECK(page.find("The mixed model uses") == std::string::npos);
     }
 }
