@@ -20,11 +20,11 @@ constexpr double entry = 0.3e-3;  // m by which a blade may miss the slot that i
 constexpr double ledge_reach = 3e-3;  // m from a ledge within which it holds a blade
 constexpr double preference = 0.1e-3;  // m by which a free blade must fit another slot better
 constexpr double wrong = 0.5e-3;  // m by which it must fit another ledge better than one that it touches
-constexpr double max_gap = 5e-3;  // m from its slot at which a blade is released
+constexpr double max_gap = 1e-3;  // m from its slot to the blade of the hand, at which it is released
 constexpr double rounding = 1e-13;  // m: in a wedge of 50 N a touch that is off by so much changes the load by 0.04 N
 constexpr double taken_over = 0.1e-3;  // m of the hand over which a wall takes over the force on the blade
-constexpr double min_upright = 0.5;  // cosine of the angle beyond which a blade is in no slot
-constexpr double min_upright_entry = 0.87;  // beyond which it enters none
+constexpr double min_upright = 0.5;  // cosine of 60°: a blade tilted farther is in no slot
+constexpr double min_upright_entry = 0.98;  // cosine of 11.5°: a blade tilted farther enters no slot
 
 /// Solves the symmetric system of `n` ≤ 3 rows; false if it is singular.
 bool solve_small(const std::array<std::array<double, 3>, 3>& m, const std::array<double, 3>& b, std::size_t n,

@@ -329,6 +329,107 @@ TEST_CASE("between two ledges a hand passes without a force, and one that presse
         }
 }
 
+/// A tilted blade with its teeth at `aside` and `height`. Angles above 0: its clamp leans away from the wall at y = 0.
+Pose tilted_by(double angle, double aside, double height) {
+    return {Vec3(0.0, aside, height), rotation_by(Vec3(-angle * degree, 0.0, 0.0)) * teeth_down};
+}
+
+TEST_CASE("a tilted blade that is drawn out of its slot feels nothing from 1 mm above the mouth and a fade on") {
+    const saw::SawShape shape = guided_blade();
+    constexpr double mouth = 15.5 * mm, speed = 20.0 * mm;
+    for (const bool is_ledge : {false, true})
+        for (const double angle : {-45.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0, 45.0}) {
+            std::vector<saw::GuideSlot> slots{slot_above()};
+            if (is_ledge) slots[0].other_wall = infinity;
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            // About the clamp. At 45 degrees the teeth are 4 mm within the slot.
+            const auto turned = [&](double share, double up) {
+                const Quat turn = rotation_by(Vec3(-share * angle * degree, 0.0, 0.0));
+                return Pose{Vec3(0.0, 0.1 * mm, up + shape.height) - turn * Vec3(0.0, 0.0, shape.height),
+                            turn * teeth_down};
+            };
+            double in_air = 0.0, above = 0.0, step = 0.0, inside = 0.0;
+            Wrench last;
+            const auto go = [&](const Pose& hand) {
+                hold.follow(slots, hand, 1e-3);
+                const Wrench now = hold.on_hand({});
+                const double height = hand.position.z - mouth, size = glm::length(now.force);
+                step = std::max(step, glm::length(now.force - last.force));
+                (height > 0.0 ? in_air : inside) = std::max(height > 0.0 ? in_air : inside, size);
+                if (height > 1.0 * mm + speed * saw::SlotHold::fade_time + 0.1 * mm) above = std::max(above, size);
+                last = now;
+            };
+            for (int n = 0; n <= 1000; ++n) go(turned(0.0, 20.0 * mm * (1.0 - n / 1000.0)));
+            REQUIRE(hold.slot() == 0);
+            for (int n = 0; n <= 1000; ++n) go(turned(n / 1000.0, 0.0));
+            for (int n = 0; n <= 1000; ++n) go(turned(1.0, speed * n * 1e-3));
+            CAPTURE(is_ledge, angle, inside, in_air, step);
+            // Away from a ledge a blade is free.
+            const bool is_pressed = is_ledge ? angle > 0.0 : angle != 0.0;
+            CHECK((inside > 1.0) == is_pressed);
+            CHECK(above == 0.0);
+            CHECK(in_air <= 1.2 * inside);
+            CHECK(step <= 0.02 * inside);
+            CHECK(hold.slot() == -1);
+        }
+}
+
+TEST_CASE("a ledge takes no blade that is tilted by more than 11.5 degrees, and none of which a part is 3 mm away") {
+    const saw::SawShape shape = guided_blade();
+    std::vector<saw::GuideSlot> slots{slot_above()};
+    slots[0].other_wall = infinity;
+    for (const double angle : {-29.0, -20.0, -12.0, 12.0, 20.0, 29.0})
+        for (const double aside : {0.1, 0.5, 1.5, 2.5, 2.9}) {
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            CAPTURE(angle, aside);
+            double force = 0.0;
+            bool is_held = false;
+            for (int n = 0; n <= 2000; ++n) {
+                hold.follow(slots, tilted_by(angle, aside * mm, 17.5 * mm - 20.0 * mm * n / 2000.0), 1e-3);
+                force = std::max(force, glm::length(hold.on_hand({}).force));
+                is_held = is_held || hold.slot() >= 0;
+            }
+            CHECK(!is_held);
+            CHECK(force == 0.0);
+        }
+    // Its teeth are near the wall, and its part at the mouth is not; or the other way round.
+    for (const double angle : {-10.0, 10.0})
+        for (const double nearest : {0.3, 1.0}) {
+            // From the teeth to the mouth of the slot.
+            const double span = 14.0 * mm * std::tan(std::abs(angle) * degree);
+            const Pose hand = tilted_by(angle, nearest * mm + (angle > 0.0 ? 0.0 : span), 1.5 * mm);
+            CAPTURE(angle, nearest);
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            hold.follow(slots, hand, 1e-3);
+            CHECK(hold.slot() == (nearest < 0.5 ? 0 : -1));
+        }
+}
+
+TEST_CASE("a corner dipped into a ledge, taken across it and drawn up gives no force outside") {
+    const saw::SawShape shape = guided_blade();
+    std::vector<saw::GuideSlot> slots{slot_above()};
+    slots[0].other_wall = infinity;
+    constexpr double mouth = 15.5 * mm, speed = 20.0 * mm;
+    for (const double angle : {-29.0, -25.0, -20.0, -11.0, -5.0, 0.0, 5.0, 11.0, 20.0, 25.0, 29.0})
+        for (const double aside : {0.1, 1.5}) {
+            saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+            double outside = 0.0, inside = 0.0;
+            const auto go = [&](double y, double z) {
+                hold.follow(slots, tilted_by(angle, y, z), 1e-3);
+                const double force = glm::length(hold.on_hand({}).force);
+                inside = std::max(inside, force);
+                if (z > mouth + 1.0 * mm + speed * saw::SlotHold::fade_time + 0.1 * mm)
+                    outside = std::max(outside, force);
+            };
+            for (int n = 0; n <= 300; ++n) go(aside * mm, mouth + 4.0 * mm - speed * n * 1e-3);
+            for (int n = 0; n <= 1000; ++n) go(aside * mm - 12.0 * mm * n / 1000.0, mouth - 2.0 * mm);
+            for (int n = 0; n <= 500; ++n) go((aside - 12.0) * mm, mouth - 2.0 * mm + speed * n * 1e-3);
+            CAPTURE(angle, aside, inside);
+            CHECK(outside == 0.0);
+            if (std::abs(angle) > 11.5) CHECK(inside == 0.0);
+        }
+}
+
 /// A hand that goes into the slot, presses in all directions, and comes back to where it started.
 struct SlotPath {
     Random random;
