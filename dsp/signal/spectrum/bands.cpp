@@ -26,15 +26,6 @@ double band_power(const Spectrum& density, double low, double high) {
     return band_power(density.power, density.df, low, high);
 }
 
-double integrated_band_power(const Spectrum& density, double low, double high) {
-    std::vector<double> integrated(density.power.size());
-    for (std::size_t k = 1; k < integrated.size(); ++k) {
-        const double omega = 2.0 * pi * density.frequency(k);
-        integrated[k] = density.power[k] / (omega * omega);
-    }
-    return band_power(integrated, density.df, low, high);
-}
-
 namespace {
 
 constexpr std::size_t kernel_reach = 64;  // bins

@@ -27,8 +27,4 @@ void estimate_leakage(std::vector<Band>& bands, const Spectrum& density);
 double band_power(std::span<const double> density, double df, double low, double high);
 double band_power(const Spectrum& density, double low, double high);
 
-/// Mean square between two frequencies (Hz) of the integral over time: of velocity, from the density of acceleration. A
-/// tone is at most 1 % off from 8 bins on.
-double integrated_band_power(const Spectrum& density, double low, double high);
-
 }  // namespace tactus::signal

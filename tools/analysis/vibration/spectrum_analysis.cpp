@@ -4,6 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "dsp/signal/filter/integrator.hpp"
+#include "dsp/signal/spectrum/band_velocity.hpp"
 
 #include <fmt/format.h>
 
@@ -62,14 +63,13 @@ sound::Calibration integrated(const sound::Calibration& recorded, const Spectrum
     return out;
 }
 
-std::optional<double> machine_velocity(const signal::Spectrum& lines, const AnalysedFile& file) {
+/// One per channel; none if the record is no calibrated acceleration or does not reach the upper limit of the band.
+std::vector<signal::BandVelocity> machine_velocities(const AnalysedFile& file, std::size_t channels,
+                                                     std::size_t frames) {
     const auto [low, high] = machine_band;
     const double usable = file.log ? std::min(0.5 * file.rate, file.log->usable) : 0.5 * file.rate;
-    if (!file.recorded.known || usable < high || lines.power.empty() || low < 4.0 * lines.df) return std::nullopt;
-    if (file.integrations == 0 && file.recorded.is_acceleration)
-        return file.recorded.si * std::sqrt(signal::integrated_band_power(lines, low, high));
-    if (file.integrations == 1 && file.high_pass <= low) return std::sqrt(signal::band_power(lines, low, high));
-    return std::nullopt;
+    if (file.only_psd || !file.recorded.known || !file.recorded.is_acceleration || usable < high) return {};
+    return std::vector(channels, signal::BandVelocity(low, high, file.rate, frames));
 }
 
 std::vector<std::string> warnings_of(const signal::VibrationReport& report, const AnalysedFile& file,
@@ -167,10 +167,15 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
         }
         reader.rewind();
     }
+    std::vector<signal::BandVelocity> velocities = machine_velocities(out, chosen.size(), reader.frames());
     std::size_t done = 0;
     while (reader.next(block)) {
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             if (block.after_gap) analyses[i].gap();
+            if (!velocities.empty()) {
+                if (block.after_gap) velocities[i].gap();
+                velocities[i].push(block.channels[chosen[i]]);
+            }
             if (integrations.empty()) {
                 analyses[i].push(block.channels[chosen[i]]);
                 continue;
@@ -189,7 +194,8 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
         AnalysedChannel& channel = out.channels.emplace_back();
         channel.name = reader.channels()[chosen[i]];
         channel.report = analyses[i].report();
-        channel.machine_velocity = machine_velocity(channel.report.lines, out);
+        if (!velocities.empty() && velocities[i].is_resolved())
+            channel.machine_velocity = out.recorded.si * velocities[i].rms();
         channel.marks = levels_at(channel.report.lines, out.marks);
         if (channel.report.envelope_spectrum)
             channel.envelope_marks = levels_at(*channel.report.envelope_spectrum, out.marks);

@@ -41,8 +41,8 @@ inline constexpr std::pair<double, double> machine_band{10.0, 1000.0};
 struct AnalysedChannel {
     std::string name;
     signal::VibrationReport report;
-    /// Velocity in `machine_band`, m/s rms; for a calibrated acceleration or velocity whose bandwidth includes its
-    /// upper limit.
+    /// Velocity in `machine_band`, m/s rms, whatever `integrations` is; for a calibrated acceleration whose bandwidth
+    /// includes the upper limit.
     std::optional<double> machine_velocity;
     std::vector<MarkLevel> marks, envelope_marks;  ///< levels at the marks, in the spectrum and in that of the envelope
     std::vector<std::string> warnings;

@@ -81,6 +81,14 @@ TEST_CASE("spectrum states kurtosis, skewness, distortion and the velocity of IS
     CHECK(folder.tactus("spectrum fan.wav --integrate velocity").code == 2);  // not calibrated
     CHECK(folder.tactus("spectrum fan.wav --integrate velocity --full-scale '1 mm/s'").code == 2);
 
+    // Near 10 Hz, where the lobe of a line would be cut at the lower limit.
+    for (const double hz : {10.5, 11.0, 12.5}) {
+        folder.sound("slow.wav", tones({{hz, 0.1 * std::numbers::sqrt2}}, 20.0, 8000.0), 1, 8000);
+        const json slow = folder.tactus("spectrum slow.wav --json --full-scale '10 m/s^2'").only("rows");
+        CHECK(slow["channels"][0]["machine_velocity_rms"].get<double>() ==
+              Approx(1.0 / (2.0 * pi * hz)).epsilon(2e-3));
+    }
+
     folder.sound("sine.wav", tones({{100.0, 0.5}}, 4.0, 8000.0), 1, 8000);
     const json sine = folder.tactus("spectrum sine.wav --json").only("rows")["channels"][0];
     CHECK(sine["kurtosis"].get<double>() == Approx(1.5).epsilon(1e-3));
