@@ -25,6 +25,36 @@ double delay_of(const TwoChannels& found) {
     return std::abs(sum) > 0.0 ? -std::arg(sum) / (2.0 * pi * found.spectra.df) : 0.0;
 }
 
+/// Sets the width of a peak at bin k, and whether the segments are too short for it. Over a resonance that they resolve
+/// the coherence does not dip, since the output is strongest there.
+void measure_width(ResponsePeak& peak, const TwoChannels& found, std::size_t k) {
+    const std::vector<std::complex<double>>& h = found.chosen();
+    const auto size = static_cast<std::ptrdiff_t>(h.size());
+    const double half = std::abs(h[k]) / std::sqrt(2.0);
+    double beside = 1.0;  // the lower of the mean coherences on both sides
+    for (const int step : {-1, 1}) {
+        auto i = static_cast<std::ptrdiff_t>(k);
+        while (i > 0 && i < size && std::abs(h[static_cast<std::size_t>(i)]) > half) i += step;
+        if (i <= 0 || i >= size) {
+            peak.bins = 0.0;
+            return;
+        }
+        const double outside = std::abs(h[static_cast<std::size_t>(i)]),
+                     inside = std::abs(h[static_cast<std::size_t>(i - step)]);
+        const double reach =
+            std::abs(static_cast<double>(i - static_cast<std::ptrdiff_t>(k))) - (half - outside) / (inside - outside);
+        peak.bins += reach;
+        double sum = 0.0, count = 0.0;
+        for (; count <= reach && i > 0 && i < size; ++count, i += step)
+            sum += found.coherence[static_cast<std::size_t>(i)];
+        beside = std::min(beside, sum / count);
+    }
+    // Standard deviation of a coherence: √(2γ²(1−γ²)²/K).
+    const double here = found.coherence[k],
+                 deviation = (1.0 - here) * std::sqrt(2.0 * here / found.spectra.effective_segments);
+    peak.is_smeared = peak.bins < min_peak_bins || beside - here > 4.0 * deviation;
+}
+
 std::vector<ResponsePeak> peaks_of(const TwoChannels& found) {
     const std::vector<std::complex<double>>& h = found.chosen();
     std::vector<ResponsePeak> peaks;
@@ -32,20 +62,28 @@ std::vector<ResponsePeak> peaks_of(const TwoChannels& found) {
         const double here = std::abs(h[k]);
         if (found.spectra.frequency(k) > found.usable || found.coherence[k] < 0.8) continue;
         if (here < std::abs(h[k - 1]) || here <= std::abs(h[k + 1])) continue;
-        // Noise makes maxima everywhere: a peak stands out on both sides by 1 dB and by six standard deviations.
-        const double least = 20.0 * std::log10(here) - std::max(1.0, 6.0 * 20.0 / std::log(10.0) * found.deviation[k]);
+        // Noise makes maxima and dips everywhere: a peak stands out on both sides by 1 dB and by six standard deviations
+        // of the difference. A dip between ripples is as uncertain as its coherence is low.
         const auto falls = [&](int step) {
             for (auto i = static_cast<std::ptrdiff_t>(k) + step; i > 0 && i < static_cast<std::ptrdiff_t>(h.size());
                  i += step) {
-                const double there = std::abs(h[static_cast<std::size_t>(i)]);
+                const auto at = static_cast<std::size_t>(i);
+                const double there = std::abs(h[at]);
                 if (there > here) return false;
-                if (20.0 * std::log10(std::max(there, 1e-300)) < least) return true;
+                const double deviation = std::hypot(found.deviation[k], found.deviation[at]);
+                const double fall = 20.0 * std::log10(here / std::max(there, 1e-300));
+                if (fall > std::max(1.0, 6.0 * 20.0 / std::log(10.0) * deviation)) return true;
             }
             return false;
         };
         if (!falls(-1) || !falls(1)) continue;
-        peaks.push_back({found.spectra.frequency(k), 20.0 * std::log10(here), std::arg(h[k]), found.coherence[k],
-                         20.0 / std::log(10.0) * found.deviation[k]});
+        ResponsePeak& peak = peaks.emplace_back();
+        peak.hz = found.spectra.frequency(k);
+        peak.level_db = 20.0 * std::log10(here);
+        peak.phase = std::arg(h[k]);
+        peak.coherence = found.coherence[k];
+        peak.deviation_db = 20.0 / std::log(10.0) * found.deviation[k];
+        measure_width(peak, found, k);
     }
     std::ranges::stable_sort(peaks, std::greater<>(), &ResponsePeak::level_db);
     if (peaks.size() > max_peaks) peaks.resize(max_peaks);

@@ -23,9 +23,14 @@ struct ResponseSettings {
     double overlap = 0.5;                ///< fraction of a segment
 };
 
+/// A Hann window lowers a resonance of this half-power width (bins) by about 0.1 dB, and a narrower one by more.
+inline constexpr double min_peak_bins = 10.0;
+
 struct ResponsePeak {
     double hz = 0.0, level_db = 0.0, phase = 0.0, coherence = 0.0;  ///< phase in rad
-    double deviation_db = 0.0;                                      ///< standard deviation of the level
+    double deviation_db = 0.0;  ///< standard deviation of the level, by noise
+    double bins = 0.0;          ///< width at half power; 0: it does not fall so far
+    bool is_smeared = false;    ///< narrower than min_peak_bins, or the coherence dips: the level is too low
 };
 
 struct TwoChannels {
@@ -41,7 +46,9 @@ struct TwoChannels {
     std::vector<std::complex<double>> h1, h2, hv;  ///< output per input, per bin
     std::vector<double> coherence, deviation;  ///< per bin; the second: standard deviation of |H1|, relative
     double noise_coherence = 0.0;  ///< mean coherence of unrelated noise with the same number of segments
-    double delay = 0.0;  ///< s, of the output: slope of the phase where the coherence is above 0.9; 0: unknown
+    /// s, of the output: mean slope of the phase where the coherence is above 0.9, of a dead time and of the resonances
+    /// together; 0: unknown.
+    double delay = 0.0;
     std::vector<ResponsePeak> peaks;  ///< of the chosen estimate where the coherence is above 0.8, the highest 5
 
     const std::vector<std::complex<double>>& chosen() const;

@@ -84,7 +84,8 @@ Action declare_response(VerbOptions& verb) {
     verb.add("--estimator", choice->estimator, "h1: noise in the output, h2: noise in the input, hv: noise in both")
         .shows_default()
         .one_of({"h1", "h2", "hv"});
-    verb.add("--segment", choice->segment, "samples (default: about 0.75 s)").range(2, 1 << 26);
+    verb.add("--segment", choice->segment, "samples (default: about 0.75 s); a peak needs 10 bins")
+        .range(2, 1 << 26);
     verb.add("--overlap", choice->overlap, "overlap as a fraction of a segment (default 0.5)").range(0.0, 0.99);
     verb.add("--csv", choice->csv, "CSV file with H1, H2, Hv and coherence over frequency");
     add_result_options(verb, choice->result, ResultFigure::styled,

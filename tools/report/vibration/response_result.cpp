@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace tactus::report {
 
@@ -43,14 +46,29 @@ const Fields<ResponsePeak>& peak_fields() {
                     })
             .number("phase_deg", "phase", fixed(0, "°"), [](const ResponsePeak& p) { return p.phase * 180.0 / pi; })
             .number("coherence", "coherence", fixed(3), &ResponsePeak::coherence)
-            .number("deviation_db", "", fixed(2, "dB"), &ResponsePeak::deviation_db);
+            .number("deviation_db", "", fixed(2, "dB"), &ResponsePeak::deviation_db)
+            .number("width_bins", "", fixed(1),
+                    [](const ResponsePeak& p) { return p.bins > 0.0 ? std::optional(p.bins) : std::nullopt; });
     return all;
+}
+
+/// The uncertainty of a level covers noise, not what segments do that are too short.
+std::vector<std::string> smeared(const TwoChannels& t) {
+    std::vector<std::string> texts;
+    for (const ResponsePeak& p : t.peaks)
+        if (p.is_smeared)
+            texts.push_back(fmt::format(
+                "the peak at {:.2f} Hz is {:.1f} bins wide with a coherence of {:.3f}: its level is too low by more than "
+                "the stated uncertainty; choose a longer --segment than {}",
+                p.hz, p.bins, p.coherence, t.welch.segment));
+    return texts;
 }
 
 const Fields<TwoChannels>& channels_fields() {
     using T = TwoChannels;
     static const Fields<T> all =
         Fields<T>("response between two channels")
+            .warnings("warnings", smeared)
             .text("input", "input", &T::input)
             .text("output", "output", &T::output)
             .text("estimator", "estimator", estimator_of)
@@ -65,8 +83,11 @@ const Fields<TwoChannels>& channels_fields() {
             .number("coherence_of_noise", "coherence of unrelated noise", fixed(3), &T::noise_coherence)
             .number("", "bins with a coherence of at least 0.9", fixed(0, "%", "1"), coherent_fraction)
             .number("delay_s", "", fixed(3, "ms", "s"), &T::delay)
-            .number("", "delay", fixed(3, "ms", "s"),
+            .number("", "delay (mean slope of the phase, with that of resonances)", fixed(3, "ms", "s"),
                     [](const T& t) { return coherent_fraction(t) > 0.0 ? std::optional(t.delay) : std::nullopt; })
+            .text("", "phase", [](const T&) {
+                return "with the delay, here and in --csv; -o keeps the delay apart as latency_s";
+            })
             .rows("peaks", "peaks with a coherence of at least 0.8", peak_fields(),
                   [](const T& t) -> const auto& { return t.peaks; })
             .text("", "peaks",

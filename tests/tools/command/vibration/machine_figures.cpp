@@ -131,6 +131,24 @@ TEST_CASE("spectrum has octave filters and a cepstrum on request, and with --psd
     CHECK(folder.tactus("spectrum gear.wav --psd-only --envelope 100:200").code == 2);
 }
 
+TEST_CASE("response warns of a peak that its segments smear, and not of one that they resolve") {
+    const RecordFolder folder;
+    constexpr double rate = 8000.0;
+    // Quality 12.
+    folder.sound("plate.wav", driven(173.0, 1.0 / 24.0, rate, 40.0, 0.02), 2, 8000);
+    const json shorter = folder.tactus("response plate.wav --json --segment 4096").answer();
+    REQUIRE(shorter["peaks"].size() == 1);
+    CHECK(shorter["peaks"][0]["width_bins"].get<double>() == Approx(7.4).margin(1.0));
+    REQUIRE(shorter["warnings"].size() == 1);
+    CHECK(shorter["warnings"][0].get<std::string>().find("choose a longer --segment than 4096") != std::string::npos);
+    const json longer = folder.tactus("response plate.wav --json --segment 16384").answer();
+    REQUIRE(longer["peaks"].size() == 1);
+    CHECK(std::abs(longer["peaks"][0]["hz"].get<double>() - 173.0) < 6.0);
+    CHECK(longer["warnings"].empty());
+    const RecordOutcome text = folder.tactus("response plate.wav --segment 4096");
+    CHECK((text.out + text.err).find("-o keeps the delay apart as latency_s") != std::string::npos);
+}
+
 TEST_CASE("response between two channels is that of the system, with H1 below and H2 above where the output is noisy") {
     const RecordFolder folder;
     constexpr double rate = 4000.0, frequency = 180.0, damping = 0.05;
