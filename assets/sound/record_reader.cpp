@@ -4,6 +4,7 @@
 #include "assets/file/extension.hpp"
 #include "assets/sound/sound_reader.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "dsp/signal/filter/regularise.hpp"
 
 #include <fmt/format.h>
@@ -141,6 +142,17 @@ void for_each_block(const table::PackedColumn& column, const Use& use) {
 }  // namespace
 
 bool LogFacts::is_even() const { return longest_step - shortest_step < 1e-3 * longest_step; }
+
+std::vector<std::string> LogFacts::missing() const {
+    std::vector<std::string> texts;
+    if (gaps > 0)
+        texts.push_back(fmt::format("the log has {} gap{}: samples of {} are missing", gaps, gaps == 1 ? "" : "s",
+                                    readable(lost_seconds, "s", 4)));
+    if (lost_rows > 0)
+        texts.push_back(fmt::format("the log has {} row{} without a value, left out", lost_rows,
+                                    lost_rows == 1 ? "" : "s"));
+    return texts;
+}
 
 struct RecordReader::Source {
     std::filesystem::path path;

@@ -28,7 +28,9 @@ struct LogFacts {
     table::LogForm form;
     double usable = 0.0;  ///< Hz, usable bandwidth given the uneven steps; at most half the mean rate
 
-    bool is_even() const;  ///< the steps differ by less than a thousandth
+    bool is_even() const;  ///< the steps differ by less than a thousandth, without gaps
+    /// What is missing, as warnings for each result of the record: gaps, rows without values.
+    std::vector<std::string> missing() const;
 };
 
 /// A block with equal length in each channel.

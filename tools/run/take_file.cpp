@@ -86,8 +86,11 @@ TakeFile::TakeFile(const TakeChoice& choice)
     peak_ = longest.largest();
     if (choice.channel == 0 && channels > 1)
         notes_.push_back(fmt::format("the {} is the mean of {} channels", role, channels));
+    if (reader_->log())
+        for (const std::string& missing : reader_->log()->missing())
+            notes_.push_back(fmt::format("the {}: {}", role, missing));
     if (pieces.size() > 1)
-        notes_.push_back(fmt::format("the {} has gaps: only the longest of its {} parts is compared, {}", role,
+        notes_.push_back(fmt::format("the {}: only the longest of its {} parts is compared, {}", role,
                                      pieces.size(), readable(static_cast<double>(frames_) / rate(), "s")));
     if (reader_->log())
         notes_.push_back(fmt::format("the {} is a log with {} rows per second, reliable to about {:.0f} Hz; read as {}",

@@ -450,6 +450,8 @@ void Regulariser::State::examine() {
     const std::size_t counted = size - 1 - facts.gaps;
     if (!(present > 0.0)) throw Error("time stands still: no two samples follow each other");
     facts.rate = static_cast<double>(counted) / present;
+    // One step of each gap is that between any two samples.
+    facts.lost = std::max(0.0, facts.lost - static_cast<double>(facts.gaps) / facts.rate);
     const auto rank = static_cast<std::size_t>(0.99 * static_cast<double>(counted - 1));
     const double long_step =
         facts.longest_step - facts.shortest_step > 1e-9 * facts.longest_step

@@ -25,7 +25,7 @@ struct EvenFacts {
     double shortest_step = 0.0, longest_step = 0.0;  ///< s, without gaps
     double step_deviation = 0.0;  ///< s: standard deviation of the steps of the given times, without gaps
     std::size_t gaps = 0;  ///< steps of more than five medians; they are not interpolated
-    double lost = 0.0;       ///< s in gaps
+    double lost = 0.0;       ///< s, of the samples that are missing in gaps
     double clock_step =
         0.0;  ///< s: step to which a clock rounded the times of even samples; 0: none, or below 1 % of theirs
     std::size_t frames = 0;   ///< even samples in all pieces

@@ -28,7 +28,8 @@ std::vector<std::string> understood(const sound::Calibration& calibration, const
     if (log) {
         lines.push_back("read as: " + table::describe(log->form));
         const std::string steps =
-            log->is_even() ? fmt::format("log, {} rows, even steps of {}", log->rows, readable(1.0 / rate, "s", 4))
+            log->is_even() ? fmt::format("log, {} rows, even steps of {}{}", log->rows, readable(1.0 / rate, "s", 4),
+                                         log->gaps > 0 ? " between gaps" : "")
                            : fmt::format(
                                  "uneven log, {} rows, steps {} to {}, standard deviation {}: "
                                  "resampled",

@@ -110,8 +110,6 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
         warnings.push_back(
             fmt::format("the rate varies from {:.1f} to {:.1f} Hz: lines are smeared; use 'tactus orders'",
                         report.fundamental.low, report.fundamental.high));
-    if (file.log && file.log->lost_seconds > 0.0)
-        warnings.push_back(fmt::format("{} gaps, {} lost", file.log->gaps, readable(file.log->lost_seconds, "s")));
     return warnings;
 }
 

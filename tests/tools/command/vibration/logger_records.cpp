@@ -63,6 +63,37 @@ TEST_CASE("what was understood of a log is said in one line and in JSON, and its
     CHECK(folder.tactus("exposure " + log).code == 0);
 }
 
+TEST_CASE("every verb that reads a log warns of its gaps and empty rows, with the time that is missing") {
+    const Folder folder;
+    std::string gap = "t_s,x [m/s^2],y [m/s^2]\n", empty = gap;
+    for (int i = 0; i < 20000; ++i) {
+        const double x = std::sin(0.3 * i), y = std::sin(0.3 * i - 0.2);
+        const std::string row = fmt::format("{:.4f},{:.5f},{:.5f}\n", 5e-4 * i, x, y);
+        if (i < 8000 || i >= 10000) gap += row;
+        empty += i % 50 == 7 ? fmt::format("{:.4f},,\n", 5e-4 * i) : row;
+    }
+    const std::string with_gap = folder.write("gap.csv", gap).string(), lost = folder.write("lost.csv", empty).string();
+    for (const char* const verb : {"spectrum", "exposure", "response", "orders --rate 100"}) {
+        CAPTURE(verb);
+        const Outcome of_gap = folder.tactus(fmt::format("{} {}", verb, with_gap));
+        const std::string all = of_gap.out + of_gap.err;
+        if (!std::string(verb).starts_with("orders")) {  // which refuses gaps
+            CHECK(of_gap.code == 0);
+            CHECK_THAT(all, ContainsSubstring("the log has 1 gap: samples of 1 s are missing"));
+            CHECK_THAT(all, ContainsSubstring("18000 rows, even steps of 500 µs between gaps"));
+        } else {
+            CHECK_THAT(all, ContainsSubstring("gap"));
+        }
+        const Outcome of_lost = folder.tactus(fmt::format("{} {}", verb, lost));
+        CHECK_THAT(of_lost.out + of_lost.err, ContainsSubstring("the log has 400 rows without a value, left out"));
+    }
+    const Outcome figures = folder.tactus("spectrum --json " + with_gap);
+    CHECK(first_row(figures)["log"]["lost_s"].get<double>() == Approx(1.0));
+    const Outcome compared = folder.tactus(fmt::format("compare --channel 1 {} {}", with_gap, lost));
+    CHECK_THAT(compared.out + compared.err, ContainsSubstring("the log has 1 gap: samples of 1 s are missing"));
+    CHECK_THAT(compared.out + compared.err, ContainsSubstring("the log has 400 rows without a value, left out"));
+}
+
 TEST_CASE("volts of a sensor are an acceleration by its sensitivity, a rate stands in for times") {
     const Folder folder;
     const std::string volts = folder.write("v.csv", "t_s,accel_x_mV\n" + rows(200.0, ',', false)).string();
