@@ -391,10 +391,6 @@ void refuse_guide(const PlannedGuide& guide) {
                                         hole.name, cut.letter, cut.name));
     for (std::size_t n = 0; n < guide.refits.size(); ++n) {
         const cutting_guide::SlotFit& fit = guide.refits[n];
-        if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
-            throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan, more than 0.05 mm or 0.1°: a finer "
-                                    "grid (--voxel) or another approach (--turn) may mend that",
-                                    guide.made.slots[n].cut.letter, fit.offset / mm, fit.angle / degree));
         const cutting_guide::MadeSlot& slot = guide.made.slots[n];
         if (const double share = fit.kept_area / slot.area(); share < cutting_guide::min_wall_share)
             throw Error(fmt::format(
@@ -402,6 +398,10 @@ void refuse_guide(const PlannedGuide& guide) {
                 "{:.0f} % (a placeholder): more space between the segments ('between_space_mm' of the inputs), a lower "
                 "slot (--depth), or another approach (--turn) leaves more",
                 slot.cut.letter, slot.cut.name, 100.0 * share, 100.0 * cutting_guide::min_wall_share));
+        if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
+            throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan, more than 0.05 mm or 0.1°: a finer "
+                                    "grid (--voxel) or another approach (--turn) may mend that",
+                                    guide.made.slots[n].cut.letter, fit.offset / mm, fit.angle / degree));
         if (guide.made.slots[n].sides != cutting_guide::Sides::one && !(fit.width > 0.0))
             throw Error(fmt::format("slot {} lacks its second wall", guide.made.slots[n].cut.letter));
         if (fit.width > 0.0 && std::abs(fit.width - guide.made.slots[n].width) > 0.05 * mm)
