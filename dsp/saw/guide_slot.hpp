@@ -19,8 +19,8 @@ struct GuideSlot {
     double low = -0.010, high = 0.010;  ///< m along x: ends of the walls
     double top = -0.015, bottom = 0.0;  ///< m along y: mouth, and the end near the bone
     double wall = -0.5e-3;  ///< m along z: one wall
-    /// m along z: the other one, greater than `wall`; infinite: a ledge. A blade enters a ledge if all of it within the slot
-    /// is within 3 mm of the wall, and stays while its nearest part is.
+    /// m along z: the other one, greater than `wall`; infinite: a ledge. A blade enters a ledge if all of it within
+    /// the slot is within 3 mm of the wall, and stays while its nearest part is.
     double other_wall = 1.0e-3;
 };
 
@@ -53,14 +53,13 @@ public:
     SlotHold() = default;
     SlotHold(const SawShape& shape, const SlotSettings& settings);
 
-    /// One tick of `dt` s. A slot holds the blade from when it is entered until the blade has left it and its round ends do
-    /// not touch it any more. A blade enters within 11.5° of the planned plane and at most 0.3 mm beyond the walls; it keeps
-    /// that room. In the slot it may tilt by 60°. Of several slots the one holds it that it fits best over its
-    /// whole length: ledges of neighbouring cuts are open to each other and their planes cross, so that a blade on one of
-    /// them is near the other. A blade that touches a ledge keeps it unless
-    /// it fits another one better by 0.5 mm. It then is released, as are one that is turned out of its slot, one that the hand
-    /// holds farther from it than 1 mm, and one for which no slots are given: the force fades over `fade_time`. Allocates
-    /// nothing.
+    /// One tick of `dt` s. A slot holds the blade from when it is entered until the blade has left it and its round
+    /// ends do not touch it any more. A blade enters within 11.5° of the planned plane and at most 0.3 mm beyond the
+    /// walls; it keeps that room. In the slot it may tilt by 60°. Of several slots the one holds it that it fits best
+    /// over its whole length: ledges of neighbouring cuts are open to each other and their planes cross, so that a
+    /// blade on one of them is near the other. A blade that touches a ledge keeps it unless it fits another one better
+    /// by 0.5 mm. It then is released, as are one that is turned out of its slot, one that the hand holds farther from
+    /// it than 1 mm, and one for which no slots are given: the force fades over `fade_time`. Allocates nothing.
     const Pose& follow(std::span<const GuideSlot> slots, const Pose& hand, double dt) noexcept;
     /// The hand jumped: without a fade.
     void drop() noexcept { *this = SlotHold(shape_, settings_); }
