@@ -46,8 +46,9 @@ add_executable(tactus-check-node tests/check_node/main.cpp tests/check_node/node
 target_include_directories(tactus-check-node PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(tactus-check-node PRIVATE tactus_embed glm::glm fmt::fmt tactus_flags ${CMAKE_DL_LIBS} Threads::Threads)
 target_compile_options(tactus-check-node PRIVATE $<$<CONFIG:Release>:-O1>)
+file(RELATIVE_PATH library_from_bin /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
 set_target_properties(tactus-check-node PROPERTIES EXPORT_NAME check-node RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
-    INSTALL_RPATH "$ORIGIN/${tactus_library_from_bin}")
+  INSTALL_RPATH "$ORIGIN/${library_from_bin}")
 add_executable(Tactus::check-node ALIAS tactus-check-node)
 install(TARGETS tactus-check-node EXPORT tactus RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT development)
 

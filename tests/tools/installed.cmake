@@ -88,6 +88,13 @@ execute_process(COMMAND ${CMAKE_CTEST_COMMAND} --test-dir ${SCRATCH}/my_gain/bui
 if(NOT code EQUAL 0 OR NOT said MATCHES "100% tests passed, 0 tests failed out of 2")
   message(FATAL_ERROR "the project of a new node fails its tests:\n${said}")
 endif()
+# The installed checker finds the library beside it.
+execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH ${SCRATCH}/moved/bin/tactus-check-node
+                        ${SCRATCH}/my_gain/build/my_gain.so
+                OUTPUT_VARIABLE said ERROR_VARIABLE complaints RESULT_VARIABLE code)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "the installed tactus-check-node ends with ${code}:\n${said}${complaints}")
+endif()
 # The folder of all users.
 file(INSTALL ${SCRATCH}/my_gain/build/my_gain.so DESTINATION ${SCRATCH}/moved/${LIBDIR}/tactus/nodes)
 execute_process(COMMAND ${tactus} nodes my_gain OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
