@@ -245,21 +245,24 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     return fit;
 }
 
-Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fixed, const Pose& start, FitMode mode) {
+Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fixed, const Pose& start, FitMode mode,
+             double kerf) {
     std::vector<Fit> fits;
     std::size_t best = 0;
-    const FitSurface *moving_face = &moving.front(), *fixed_face = &fixed.front();
-    for (const FitSurface& m : moving)
-        for (const FitSurface& f : fixed) {
-            fits.push_back(find_fit(m, f, start, mode, settings_for(m, f)));
+    for (std::size_t m = 0; m < moving.size(); ++m)
+        for (std::size_t f = 0; f < fixed.size(); ++f) {
+            FitSettings settings = settings_for(moving[m], fixed[f]);
+            settings.kerf = kerf;
+            fits.push_back(find_fit(moving[m], fixed[f], start, mode, settings));
+            fits.back().moving_face = m;
+            fits.back().fixed_face = f;
             // The fitted area is part of the score: a small patch finds a match on any large one.
             const auto worth = [](const Fit& fit) { return fit.quality.score * std::sqrt(fit.quality.overlap); };
             if (fits.size() > 1 && !(worth(fits.back()) > worth(fits[best]))) continue;
             best = fits.size() - 1;
-            moving_face = &m;
-            fixed_face = &f;
         }
     Fit fit = fits[best];
+    const FitSurface *moving_face = &moving[fit.moving_face], *fixed_face = &fixed[fit.fixed_face];
     const Pose chosen = between_centres(*moving_face, *fixed_face, fit.pose);
     for (std::size_t n = 0; n < fits.size(); ++n) {
         fit.iterations += n == best ? 0 : fits[n].iterations;

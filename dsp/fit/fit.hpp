@@ -87,6 +87,7 @@ struct Fit {
     std::vector<FreeDirection> free;
     std::array<double, 6> hold{};  ///< mean square slope along the directions, ascending
     int iterations = 0;  ///< steps of the solver, over all starts
+    std::size_t moving_face = 0, fixed_face = 0;  ///< of lists of faces: those that fit
 };
 
 /// Returns the first of these verdicts that applies: no_match, sliding (`is_free`), ambiguous (`margin`), blocked,
@@ -99,8 +100,9 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
              const FitSettings& settings = {});
 
 /// Returns the best fit of any moving face to any fixed one; `margin` refers to the next best pose of all pairs.
-/// Neither list may be empty.
-Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fixed, const Pose& start, FitMode mode);
+/// Neither list may be empty. `kerf`: as in FitSettings.
+Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fixed, const Pose& start, FitMode mode,
+             double kerf = 0.0);
 
 /// Minimises the energy from `start` at the finest scale only: refines a fit while the hand still holds the body. Poses
 /// are those of the bodies. Does not allocate beyond `energy`.

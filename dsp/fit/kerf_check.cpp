@@ -32,6 +32,8 @@ constexpr double max_spread = 1e-3;  // m: what a contour says that knows less m
 // Of the standard deviation. Measured, not derived: with `tactus-bench shafts --count 20`, with and without chips, none of
 // 40 that had lost 0.8 mm passed; of 40 whole ones with chips, none was refused for a kerf.
 constexpr double share_of_spread = 0.5;
+constexpr double flat_relief = 0.25e-3;  // m rms; a saw leaves 0.1 mm
+constexpr double flat_loss = 3e-3;  // m: 95 % of losses that are exponentially distributed around 1 mm, the width of a blade
 
 struct Spot {
     Vec3 at, normal;
@@ -207,6 +209,20 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
     return found;
 }
 
+namespace {
+
+/// m rms: heights of a face above its plane.
+double relief_of(const FitSurface& face) {
+    double squares = 0.0;
+    for (std::size_t n = 0; n < face.position.size(); ++n) {
+        const double height = glm::dot(face.position[n], face.plane_normal);
+        squares += face.share[n] * height * height;
+    }
+    return std::sqrt(squares);
+}
+
+}  // namespace
+
 KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> told) {
     KerfEstimate made;
     made.told = told;
@@ -222,14 +238,26 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
         const double limit = contour.spread < max_spread ? max_error : 2.0 * contour.spread;
         made.is_contradicted = std::abs(missing) > limit;
         made.is_too_wide = left * (1.0 / cosine - 1.0) > max_error;
-    } else if (contour.strips >= independent) {
+    } else {
         // Without lost bone, faces touch whatever the contour beside them: ridges that end there also cause steps, which
         // `spread` includes.
-        const double doubt = share_of_spread * contour.spread;
-        made.is_contradicted = missing > std::max(max_error, doubt);
-        made.is_open = !made.is_contradicted && std::max(0.0, missing) + doubt > max_error;
+        const double doubt = share_of_spread * contour.spread, seen = std::max(0.0, missing);
+        const bool has_contour = contour.strips >= independent;
+        made.is_contradicted = has_contour && missing > std::max(max_error, doubt);
+        made.is_flat = std::min(relief_of(*moving.face), relief_of(*fixed.face)) < flat_relief;
+        if (has_contour && seen + doubt > max_error) made.loss = seen + 2.0 * contour.spread;
+        if (made.is_flat) made.loss = std::max(made.loss, flat_loss);
+        made.is_open = !made.is_contradicted && made.loss > 0.0;
     }
     return made;
+}
+
+FitVerdict include_kerf(const KerfEstimate& kerf, FitVerdict verdict, PoseBound& bound) noexcept {
+    bound.face = std::hypot(bound.face, kerf.loss);
+    bound.far = std::hypot(bound.far, kerf.loss);
+    const bool is_refused = kerf.is_contradicted || kerf.is_too_wide;
+    if (is_refused && (kerf.told || verdict == FitVerdict::fit)) return FitVerdict::ambiguous;
+    return kerf.is_open ? FitVerdict::uncertain : verdict;
 }
 
 CommonOpening common_opening(std::span<const ContourOpening> pairs) noexcept {

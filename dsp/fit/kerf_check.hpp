@@ -5,10 +5,12 @@
 // apart or too close along its normal n, the contour has a step there: n·ν times the error, at a contour with the
 // normal ν. Strips of cortex across the gap, on both halves, give the step. Its spread is estimated from the
 // disagreement of the strips, and of strips of two lengths, because curved cortex is not a parabola. A square break
-// through a prism leaves no step at any width of the gap; the estimate then has a large spread.
+// through a prism leaves no step at any width of the gap; the estimate then has a large spread. Flat faces slide along
+// each other until the contour has no step, so it excludes no loss between them.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/fit/fit.hpp"
 #include "dsp/fit/fit_surface.hpp"
 
 #include <optional>
@@ -43,8 +45,15 @@ struct KerfEstimate {
     /// with a standard deviation of 1 mm or more must give a shift of two standard deviations instead. Without a given
     /// kerf, the shift must also exceed half a standard deviation.
     bool is_contradicted = false;
-    /// True if no kerf was given and the contour does not exclude a loss of half a millimetre: its estimate plus half a
-    /// standard deviation is larger. False without a contour.
+    /// True if no kerf was given and a face has less than 0.25 mm of relief (rms), as a saw leaves it. Two faces share a
+    /// greater relief only if nothing is lost, or a layer of even thickness with the same relief, which neither a saw nor
+    /// crushing removes.
+    bool is_flat = false;
+    /// m along the opening: largest loss that is not excluded, if no kerf was given. Beside a contour whose estimate plus
+    /// half a standard deviation exceeds half a millimetre: the estimate plus two standard deviations. Between flat faces:
+    /// at least 3 mm. Otherwise 0.
+    double loss = 0.0;
+    /// True if a loss is not excluded, and not contradicted either.
     bool is_open = false;
     /// True if the given kerf is ambiguous by more than half a millimetre: the opening of rough faces lies between
     /// `told` and told / (mean cosine of their slopes).
@@ -56,6 +65,11 @@ struct KerfEstimate {
 /// Checks two halves that were fitted with this kerf (m); without a value, no kerf was given. A given kerf of 0
 /// (nothing lost) is accepted without checking the contour.
 KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> told);
+
+/// Adds the loss to the bound of a fit or an uncertain fit, and returns its verdict: `ambiguous` for a fit whose kerf is
+/// contradicted or too wide, `uncertain` for one whose kerf is open. An uncertain fit is `ambiguous` only if a given
+/// kerf is; without one, its bound includes the loss.
+FitVerdict include_kerf(const KerfEstimate& kerf, FitVerdict verdict, PoseBound& bound) noexcept;
 
 /// Common estimate of the bone lost between each of several pairs, from all their contours. The pairs of one case broke
 /// in the same way, so their openings scatter around one mean (random effects: DerSimonian & Laird, Control. Clin.

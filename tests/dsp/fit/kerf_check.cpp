@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -80,7 +81,7 @@ TEST_CASE("dsp: a kerf that is wrong by millimetres is found out on a bone of fl
 }
 
 TEST_CASE("dsp: a kerf that nobody told is seen beside an oblique break, and none where none is") {
-    const Oblique lost(1.4 * mm, 0.1 * mm), whole(0.0, 0.1 * mm);
+    const Oblique lost(1.4 * mm, 0.1 * mm), whole(0.0, 0.8 * mm);
     CHECK_FALSE(whole.check(std::nullopt).is_doubtful());
     // Fitted without a kerf, the faces lie on each other.
     const Pose closed = lost.apart(-1.4 * mm);
@@ -124,6 +125,85 @@ TEST_CASE("dsp: what a contour says of the opening of a curved bone is as uncert
     const double ratio = std::sqrt(squares / bones);
     CHECK(ratio > 0.4);
     CHECK(ratio < 1.2);
+}
+
+// Costly: 36 bars.
+TEST_CASE("dsp: without a kerf, flat faces are no fit, and rough ones that lost nothing are one", "[slow]") {
+    constexpr double held = 0.05 * mm;  // by the faces alone
+    int rough_fits = 0;
+    for (const bool is_flat : {false, true})
+        for (const double slope : {0.0, 0.1, 0.35})
+            for (const auto& [height, lost] : {std::pair{0.02 * mm, 0.0},
+                                               {0.02 * mm, 0.8 * mm},
+                                               {0.02 * mm, 1.5 * mm},
+                                               {0.3 * mm, 0.0},
+                                               {1.0 * mm, 0.0},
+                                               {3.0 * mm, 0.0}}) {
+                CAPTURE(is_flat, slope, height / mm, lost / mm);
+                const Relief rough = rough_relief(3, height);
+                const auto relief = [&](double y, double z) { return rough(y, z) + slope * y; };
+                // The layer is lost along the normal of the break; the fit closes it.
+                const Vec3 shift = lost * glm::normalize(Vec3(1.0, -slope, 0.0));
+                const auto closed = [&](double y, double z) { return relief(y + shift.y, z) - shift.x; };
+                const Half left = bar_half(-1.0, closed, {.is_flat = is_flat}),
+                           right = bar_half(1.0, relief, {.is_flat = is_flat});
+                const fit::FitSurface moving = left.surface(), fixed = right.surface();
+                const auto judged = [&](std::optional<double> told, fit::PoseBound& bound) {
+                    const fit::KerfEstimate seen = fit::check_kerf(
+                        {left.points, &moving}, {right.points, &fixed}, {shift, {1.0, 0.0, 0.0, 0.0}}, told);
+                    UNSCOPED_INFO(seen.kerf / mm << " ± " << seen.spread / mm << " mm, loss " << seen.loss / mm);
+                    return fit::include_kerf(seen, fit::FitVerdict::fit, bound);
+                };
+                fit::PoseBound bound{0.0, held, held, false}, told = bound;
+                const fit::FitVerdict verdict = judged(std::nullopt, bound);
+                if (height < 0.1 * mm) CHECK(verdict != fit::FitVerdict::fit);
+                else rough_fits += verdict == fit::FitVerdict::fit && bound.face == held;
+                if (verdict != fit::FitVerdict::ambiguous) CHECK(bound.face >= lost);
+                CHECK(judged(0.0, told) == fit::FitVerdict::fit);
+                CHECK(told.face == held);
+            }
+    // All of 18 but two square breaks of flat-sided bars, whose contour knows nothing.
+    CHECK(rough_fits >= 16);
+}
+
+TEST_CASE("dsp: flat faces that slid along each other until their contours agree may still have lost bone") {
+    // Half a millimetre off along the break closes the step that 1.4 mm of lost bone leaves.
+    const Oblique bar(1.4 * mm, 0.02 * mm), rough(0.0, 0.8 * mm);
+    const Vec3 along(0.35, 1.0, 0.0);
+    Pose closed = bar.apart(-1.4 * mm);
+    const double step = bar.opening(closed).excess * 0.35;
+    closed.position -= step * along;
+    const fit::KerfEstimate seen = bar.check(std::nullopt, closed);
+    CAPTURE(seen.kerf / mm, seen.spread / mm, step / mm);
+    CHECK_FALSE(seen.is_contradicted);
+    CHECK(seen.is_flat);
+    CHECK(seen.is_open);
+    CHECK(seen.loss >= 3.0 * mm);
+    CHECK_FALSE(rough.check(std::nullopt).is_flat);
+    CHECK(rough.check(std::nullopt).loss == 0.0);
+}
+
+TEST_CASE("dsp: the bone that may be lost is in the bound of a fit, which it makes uncertain") {
+    const auto included = [](const fit::KerfEstimate& kerf, fit::FitVerdict verdict) {
+        fit::PoseBound bound{0.01, 0.3 * mm, 0.4 * mm, false};
+        const fit::FitVerdict made = fit::include_kerf(kerf, verdict, bound);
+        return std::pair(made, bound);
+    };
+    fit::KerfEstimate open;
+    open.loss = 0.4 * mm;
+    open.is_open = true;
+    const auto [verdict, bound] = included(open, fit::FitVerdict::fit);
+    CHECK(verdict == fit::FitVerdict::uncertain);
+    CHECK(bound.face == Approx(0.5 * mm));
+    CHECK(bound.far == Approx(0.566 * mm).epsilon(1e-3));
+    CHECK(bound.turn == 0.01);
+    fit::KerfEstimate refused;
+    refused.is_contradicted = true;
+    CHECK(included(refused, fit::FitVerdict::fit).first == fit::FitVerdict::ambiguous);
+    CHECK(included(refused, fit::FitVerdict::uncertain).first == fit::FitVerdict::uncertain);
+    refused.told = 1.0 * mm;
+    CHECK(included(refused, fit::FitVerdict::uncertain).first == fit::FitVerdict::ambiguous);
+    CHECK(included({}, fit::FitVerdict::fit).first == fit::FitVerdict::fit);
 }
 
 TEST_CASE("dsp: a nearly square break that nobody told a kerf of is no fit, because none is excluded") {

@@ -77,12 +77,18 @@ Snapped snap_files(const SnapSettings& settings) {
     const std::vector<fit::FitSurface> fixed_faces = faces_of(fixed, settings.fixed);
     Snapped out;
     const auto begin = std::chrono::steady_clock::now();
-    out.fit = fit::find_fit(moving_faces, fixed_faces, settings.start, settings.mode);
+    out.fit = fit::find_fit(moving_faces, fixed_faces, settings.start, settings.mode,
+                            settings.kerf.value_or(0.0));
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const bool has_place = out.fit.verdict == fit::FitVerdict::fit || out.fit.verdict == fit::FitVerdict::uncertain;
     out.as_scanned =
         has_place && fit::is_as_scanned(moving.bone.points, out.fit.pose, contact::make_voxmap(fixed.bone.distance));
     if (out.as_scanned) out.fit.verdict = fit::FitVerdict::ambiguous;
+    else if (has_place) {
+        out.kerf = fit::check_kerf({moving.bone.points, &moving_faces[out.fit.moving_face]},
+                                   {fixed.bone.points, &fixed_faces[out.fit.fixed_face]}, out.fit.pose, settings.kerf);
+        out.fit.verdict = fit::include_kerf(*out.kerf, out.fit.verdict, out.fit.bound);
+    }
     out.moved = motion_between(settings.start, out.fit.pose, middle_of(moving.bone.points));
     out.moving = side_of(moving, moving_faces);
     out.fixed = side_of(fixed, fixed_faces);

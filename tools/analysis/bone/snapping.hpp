@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/fit/fit.hpp"
+#include "dsp/fit/kerf_check.hpp"
 #include "tools/analysis/bone/surface_file.hpp"
 
 #include <filesystem>
@@ -25,6 +26,7 @@ struct SnapSettings {
     FragmentPaint moving_paint, fixed_paint;
     Pose start;  ///< start pose of the moving fragment
     fit::FitMode mode = fit::FitMode::extended;
+    std::optional<double> kerf;  ///< m, bone lost along the faces; 0: nothing was lost
 };
 
 /// The painted faces of a fragment.
@@ -36,6 +38,7 @@ struct SnappedSide {
 
 struct Snapped {
     fit::Fit fit;
+    std::optional<fit::KerfEstimate> kerf;  ///< if faces fit; included in verdict and bound
     bool as_scanned = false;  ///< the fit only reproduces the scanned position; the verdict is then ambiguous
     Motion moved;  ///< motion of the moving fragment's centre from the start
     double seconds = 0.0;  ///< duration of the fit, s

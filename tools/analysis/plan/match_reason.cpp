@@ -2,6 +2,7 @@
 #include "tools/analysis/plan/match_reason.hpp"
 
 #include "dsp/fit/faces.hpp"
+#include "tools/analysis/bone/kerf_doubt.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -139,24 +140,10 @@ std::string no_match(const fit::FitQuality& q, const fit::FitSettings& settings)
                        settings.max_rms * settings.sigma * 1e3);
 }
 
-std::string doubt_of(const fit::KerfEstimate& kerf) {
-    std::string said = kerf.told ? fmt::format("unsure: told a kerf of {:.1f} mm", *kerf.told * 1e3)
-                                 : "unsure: the faces lie on each other, and the cortex beyond them does not";
-    if (kerf.is_open)
-        return fmt::format(
-            "unsure: the cortex beyond the faces does not exclude that bone is lost between them ({:.1f} ± {:.1f} mm): "
-            "say how much with --kerf, or --kerf 0 if none is, or put it there with 'tactus plan snap --uncertain' and "
-            "settle it with 'tactus plan accept'",
-            kerf.kerf * 1e3, kerf.spread * 1e3);
-    if (!kerf.is_contradicted)
-        return said + "; across rough faces so wide a gap is not known to 0.5 mm: place it by hand";
-    const double seen = std::round(kerf.kerf * 1e4) / 10.0;  // mm
-    if (!(seen > 0.0))
-        return said + ", and the cortex beyond the faces says that no bone is lost: --kerf 0 if that is so";
-    return fmt::format(
-        "{}; a kerf of about {:.1f} mm is seen ({:.1f} ± {:.1f} mm): --kerf \"{:.1f} mm\" if so much bone is lost, "
-        "or place it by hand",
-        said, seen, seen, kerf.spread * 1e3, seen);
+std::string kerf_reason(const fit::KerfEstimate& kerf) {
+    return kerf_doubt(kerf) + (kerf.is_open ? ", or put it there with 'tactus plan snap --uncertain' and settle it with "
+                                              "'tactus plan accept'"
+                                            : "");
 }
 
 }  // namespace
@@ -179,7 +166,7 @@ std::string why_not_placed(const plan::CasePlan& plan, const PlanMatching& match
     const std::string next = way == MatchWay::near ? "bring it nearer to its place, use --mode global, or " + correct
                              : only == fit::Arrangement::none ? "name its partner at 'tactus plan snap', or " + correct
                                                               : correct;
-    if (found.kerf && found.kerf->is_doubtful()) return doubt_of(*found.kerf);
+    if (found.kerf && found.kerf->is_doubtful()) return kerf_reason(*found.kerf);
     if (found.inside != fit::Arrangement::none) {
         const std::string& other = plan.fragments[static_cast<std::size_t>(found.inside)].name;
         return fmt::format(

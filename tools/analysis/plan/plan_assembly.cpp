@@ -137,7 +137,7 @@ private:
             if (made.margin < matching_.settings().fit.min_margin) made.verdict = fit::FitVerdict::ambiguous;
         }
         const PlanMatch found = judge(made, stands);
-        if (found.kerf) openings_[ordered(moving, made.partner)] = found.kerf->contour;
+        if (found.kerf && !found.kerf->is_flat) openings_[ordered(moving, made.partner)] = found.kerf->contour;
         if (found.match.verdict != fit::FitVerdict::fit) {
             remember(found, pair.worth());
             return false;

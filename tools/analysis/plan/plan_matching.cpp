@@ -108,19 +108,6 @@ void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& ar
     }
 }
 
-namespace {
-
-/// The place is right but for bone that may be lost across the faces, which the contour does not exclude: the error
-/// bound includes the largest such loss (95 %).
-void leave_open(fit::FragmentMatch& match, const fit::ContourOpening& contour) {
-    const double open = std::max(0.0, -contour.excess) + 2.0 * contour.spread;
-    match.verdict = fit::FitVerdict::uncertain;
-    match.bound.face = std::hypot(match.bound.face, open);
-    match.bound.far = std::hypot(match.bound.far, open);
-}
-
-}  // namespace
-
 PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement,
                                const std::vector<char>& counts, const fit::CommonOpening& case_opening) const {
     PlanMatch found;
@@ -135,12 +122,12 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
     found.as_scanned = has_place() && fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose,
                                                          fragment(made.partner).map);
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
-    if (found.match.verdict == fit::FitVerdict::fit) {
-        found.kerf = estimate_kerf(found, arrangement);
-        if (found.kerf && !found.kerf->told && case_opening.excludes_kerf(found.kerf->contour))
+    if (has_place() && (found.kerf = estimate_kerf(found, arrangement))) {
+        if (!found.kerf->told && !found.kerf->is_flat && case_opening.excludes_kerf(found.kerf->contour)) {
             found.kerf->is_contradicted = found.kerf->is_open = false;
-        if (found.kerf && found.kerf->is_open) leave_open(found.match, found.kerf->contour);
-        else if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
+            found.kerf->loss = 0.0;
+        }
+        found.match.verdict = fit::include_kerf(*found.kerf, found.match.verdict, found.match.bound);
     }
     if (has_place()) {
         look_for_overlap(found, arrangement, counts);

@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/bone/snapping.hpp"
+#include "tools/command/kerf_option.hpp"
 #include "tools/command/old_words.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/command/result_options.hpp"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace tactus::command {
 
@@ -26,6 +28,7 @@ using file::Json;
 struct SnapChoice {
     analysis::SnapSettings settings;
     std::string paint = "auto", start, mode = "extended";
+    std::optional<double> kerf;  ///< mm
     ResultChoice result;
 };
 
@@ -49,6 +52,7 @@ analysis::SnapSettings settings_of(const SnapChoice& choice) {
     settings.mode = choice.mode == "baseline" ? fit::FitMode::thesis
                     : choice.mode == "global" ? fit::FitMode::global
                                               : fit::FitMode::extended;
+    if (choice.kerf) settings.kerf = *choice.kerf * 1e-3;
     if (const auto comma = choice.paint.find(','); comma != std::string::npos) {
         settings.moving_paint.file = choice.paint.substr(0, comma);
         settings.fixed_paint.file = choice.paint.substr(comma + 1);
@@ -87,6 +91,7 @@ Action declare_snap(VerbOptions& verb) {
     verb.add("--mode", choice->mode, "extended and baseline (Olsson 2015) start from there, global from anywhere")
         .one_of({"extended", "global", "baseline"})
         .shows_default();
+    add_kerf(verb, choice->kerf);
     add_result_options(verb, choice->result, ResultFigure::none);
     verb.old([](std::vector<std::string>& words) { rename_value(words, "--mode", "thesis", "baseline"); });
     return [choice] { return snap(*choice); };

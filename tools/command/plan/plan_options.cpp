@@ -2,6 +2,7 @@
 #include "tools/command/plan/plan_options.hpp"
 
 #include "assets/plan/plan_file.hpp"
+#include "tools/command/kerf_option.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -20,10 +21,7 @@ Option add_plan_report_options(VerbOptions& verb, PlanChoice& choice, Product pr
 }
 
 void add_fit_options(VerbOptions& verb, PlanChoice& choice) {
-    verb.add("--kerf", choice.kerf,
-             "mm of bone that a blade or a break took away all along the faces; the fit leaves it open. 0: nothing is "
-             "lost, and no kerf is looked for (default: a fit that the cortex shows open is refused)")
-        .range(0.0, 4.0);
+    add_kerf(verb, choice.kerf);
     verb.flag("--healthy", choice.with_healthy,
               "fit to the healthy side of 'plan mirror' too: it decides where the faces slide on each other");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/bone/fit_result.hpp"
 
+#include "tools/analysis/bone/kerf_doubt.hpp"
 #include "tools/report/bone/pose_fields.hpp"
 
 #include <fmt/format.h>
@@ -83,6 +84,7 @@ const Fields<Sides<std::vector<double>>>& painted_fields() {
 std::vector<std::string> notes_of(const SnappedFiles& s) {
     std::vector<std::string> notes;
     if (s.found->as_scanned) notes.emplace_back(as_scanned_note);
+    if (s.found->kerf && s.found->kerf->is_doubtful()) notes.push_back(analysis::kerf_doubt(*s.found->kerf));
     if (s.found->moving.as_scanned > 0.0) notes.push_back(left_out_words(s.moving, s.found->moving.as_scanned));
     if (s.found->fixed.as_scanned > 0.0) notes.push_back(left_out_words(s.fixed, s.found->fixed.as_scanned));
     return notes;

@@ -7,7 +7,6 @@
 
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -45,8 +44,8 @@ TEST_CASE("a fit across which bone may be lost is uncertain, and its bound inclu
     REQUIRE(open.kerf->is_open);
     CHECK(open.match.verdict == fit::FitVerdict::uncertain);
     CHECK(glm::length(open.match.pose.position - known.match.pose.position) < 1e-9);
-    const fit::ContourOpening& contour = open.kerf->contour;
-    const double loss = std::max(0.0, -contour.excess) + 2.0 * contour.spread;
+    const double loss = open.kerf->loss;
+    CHECK(loss > 0.5 * mm);
     CHECK(open.match.bound.face >= loss);
     CHECK(open.match.bound.far >= loss);
     CHECK(open.match.bound.face < loss + known.match.bound.face);

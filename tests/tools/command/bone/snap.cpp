@@ -61,6 +61,28 @@ TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's 
     CHECK(json::parse(stranger.out)["verdict"] != "fit");
 }
 
+// Costly: three searches on whole surfaces.
+TEST_CASE("snap calls halves that lost bone between them a fit only if its bound contains the loss", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    bone::save_bone(bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("a") + " --seed 4 --kerf 1.6").code == 0);
+    const json truth = json::parse(slurp(folder.path / "a/truth.json"));
+    const Pose wanted = pose_in(truth["fragments"][0]["pose"]).inverse() * pose_in(truth["fragments"][1]["pose"]);
+    const std::string snap = "snap " + file("a/fragment_02.vdb") + " " + file("a/fragment_01.vdb") + " --json";
+    const auto error_of = [&](const json& fit) {
+        const Vec3 middle = pose_in(truth["fragments"][1]["pose"]).inverse().apply(Vec3(0.0));
+        return glm::length(pose_in(fit["pose"]).apply(middle) - wanted.apply(middle));
+    };
+    const json open = json::parse(folder.tactus(snap).out), told = json::parse(folder.tactus(snap + " --kerf 1.6").out);
+    CAPTURE(open.dump(1), told.dump(1), error_of(open) / mm, error_of(told) / mm);
+    CHECK(error_of(open) > 1.0 * mm);
+    CHECK(open["verdict"] != "fit");
+    if (open["verdict"] == "uncertain") CHECK(open["bound"]["face_mm"].get<double>() * mm > error_of(open));
+    CHECK(folder.tactus(snap.substr(0, snap.rfind(' '))).out.find("--kerf") != std::string::npos);
+    CHECK(error_of(told) < 0.5 * mm);
+}
+
 TEST_CASE("halves that touch in one scan are not called a fit where the scan has them", "[long]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
