@@ -94,7 +94,7 @@ TEST_CASE("a window closed in a pause asks about the steps that wait, and saves 
     REQUIRE_FALSE(is_locked());
     const std::string waits = "run\nuntil 0.3\npause\nuntil paused\npress \"part fragment_03\"\nframes 3\n"
                               "press \"lock\"\nframes 3\n";
-    folder.write("script", waits + "shut\nframes 100\npress \"save steps\"\nwait 30\n");
+    folder.write("script", waits + "shut\nframes 400\npress \"save steps\"\nwait 30\n");
     const Outcome done =
         on(display, folder, "view a.plan.json --layout plan --view-script script");
     INFO(done.err);
