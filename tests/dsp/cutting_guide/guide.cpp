@@ -9,6 +9,8 @@
 #include "tests/dsp/geometry/closed_mesh.hpp"
 #include "tests/support/catch.hpp"
 
+#include <glm/gtc/quaternion.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -101,6 +103,25 @@ TEST_CASE("a guide with close cuts has no part too thin to print", "[slow]") {
         INFO("slot " << slot.cut.letter);
         CHECK(std::abs(fit.offset) < 0.05 * mm);
         CHECK(fit.angle < 0.1 * degree);
+    }
+}
+
+// Costly: a guide with close cuts is meshed several times.
+TEST_CASE("a slot that is 0.3 degrees off the plan is measured as such, however little of its wall is left", "[slow]") {
+    for (const double gap : {4.0 * mm, 12.0 * mm}) {
+        GuideDesign design = test::random_guide(100, 2);
+        design.settings.sides = Sides::one;
+        design.cuts[2].plane.origin = design.cuts[1].plane.origin + gap * design.along;
+        const MadeGuide made = make_guide(design, run_in_turn);
+        for (const MadeSlot& slot : made.slots)
+            for (const Vec3& axis : {slot.deep, slot.wide}) {
+                INFO("slot " << slot.cut.letter << ", gap " << gap / mm << " mm");
+                MadeSlot planned = slot;
+                // About the middle of the wall that is there, so that all of it stays near the plane.
+                planned.cut.plane.origin = slot.middle;
+                planned.cut.plane.normal = glm::angleAxis(0.3 * degree, axis) * slot.cut.plane.normal;
+                CHECK(refit_slot(made.surface, planned).angle / degree == Approx(0.3).margin(0.03));
+            }
     }
 }
 
