@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// QUEST+ (Watson 2017): the next level is the one whose answer is expected to leave the least entropy.
+// QUEST+ (Watson 2017) for one threshold: the next level is the one whose answer is expected to tell most about it.
 #pragma once
 
 #include "dsp/psychophysics/psychometric.hpp"
@@ -12,15 +12,21 @@ namespace tactus::psychophysics {
 struct QuestSettings {
     Form form = Form::weibull;
     std::vector<double> levels;      ///< that may be shown
-    std::vector<double> thresholds;  ///< prior: uniform over all combinations
+    std::vector<double>
+        thresholds;  ///< levels at which an answer is correct with `target`; prior: uniform over all combinations
     std::vector<double> slopes;
     std::vector<double> lapses{0.02};
     double guess = 0.5;
+    double target = 0.75;  ///< probability of a correct answer at the threshold, between guess and 1 - lapse
 };
 
+/// Slopes and lapses are nuisances: the entropy is that of the threshold alone (psi-marginal, Prins 2013). With the entropy of all
+/// parameters half of the trials go to levels that tell of the slope: after 60 trials the error of the threshold is 0.088 in
+/// log10 instead of 0.073 (`tactus bench experiments`).
 class QuestPlus {
 public:
-    /// Throws Error when a list is empty, not ascending, or when a probability would be outside of [0, 1].
+    /// Throws Error when a list is empty, not ascending, when a probability would be outside of [0, 1], or when no level has
+    /// `target`.
     explicit QuestPlus(const QuestSettings& settings);
 
     /// Level with the least expected entropy; of equal ones the lowest.
@@ -29,18 +35,16 @@ public:
     /// another. Throws Error for a level that is not finite.
     void answer(double level, bool correct);
 
-    Psychometric mean() const;  ///< of the posterior
-    double threshold_deviation() const;  ///< standard deviation of the posterior threshold
-    double entropy() const;  ///< of the posterior, nats
+    double entropy() const;  ///< of the posterior of the threshold, nats
 
 private:
+    std::size_t nuisances() const { return settings_.slopes.size() * settings_.lapses.size(); }
     void choose();
-    Psychometric parameters(std::size_t index) const;
 
     QuestSettings settings_;
-    std::vector<double> posterior_;
-    std::vector<double> likelihood_;  // of a correct answer: row per level, column per combination
-    std::vector<double> likelihood_entropy_;  // of the answer, same shape
+    std::vector<Psychometric> functions_;  // a row per threshold, a column per slope and lapse
+    std::vector<double> posterior_;  // of functions_
+    std::vector<double> likelihood_;  // of a correct answer: a row per level, a column per function
     std::size_t next_ = 0;
 };
 

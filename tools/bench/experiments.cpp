@@ -34,7 +34,7 @@ using file::Json;
 
 constexpr double max_between_trials = 50e-3;  // s
 constexpr double max_bias = 2.0;  // percent of the threshold
-constexpr int biased_below = 60;  // trials: fewer do not suffice for it
+constexpr int min_trials_for_bias = 60;
 
 struct ExperimentsChoice {
     int studies = 10'000, observers = 1000, subjects = 16, intervals = 100;
@@ -140,14 +140,6 @@ constexpr std::array<double, 3> true_slopes{2.0, 3.0, 5.0};  // of one observer 
 constexpr std::size_t judged = 3;  // of trial_counts: a session
 double true_slope(int observer) { return true_slopes[static_cast<std::size_t>(observer) % true_slopes.size()]; }
 
-psychophysics::QuestSettings wide_prior() {
-    psychophysics::QuestSettings settings;
-    for (int i = 0; i <= 80; ++i) settings.thresholds.push_back(-0.8 + 0.02 * i);  // 1.6 decades
-    for (int i = 0; i <= 40; ++i) settings.levels.push_back(-1.0 + 0.05 * i);
-    settings.slopes = psychophysics::usual_slopes(settings.form);
-    return settings;
-}
-
 psychophysics::StaircaseRule two_down_one_up() {
     psychophysics::StaircaseRule rule;
     rule.start = 0.8;
@@ -157,6 +149,15 @@ psychophysics::StaircaseRule two_down_one_up() {
     rule.reversals = 1000;
     rule.max_trials = trial_counts.back();
     return rule;
+}
+
+psychophysics::QuestSettings wide_prior() {
+    psychophysics::QuestSettings settings;
+    for (int i = 0; i <= 80; ++i) settings.thresholds.push_back(-0.8 + 0.02 * i);  // 1.6 decades
+    for (int i = 0; i <= 40; ++i) settings.levels.push_back(-1.0 + 0.05 * i);
+    settings.target = two_down_one_up().target();
+    settings.slopes = psychophysics::usual_slopes(settings.form);
+    return settings;
 }
 
 psychophysics::PosteriorSettings posterior_settings() {
@@ -205,10 +206,9 @@ MethodErrors adaptive_errors(int observers) {
 struct Coverage {
     double bootstrap = 0.0, posterior = 0.0;
 };
-/// And the most processor time in which QUEST+ chose the next level, s.
 struct Covered {
     Coverage constant, quest, stairs;
-    double next_level = 0.0;
+    double next_level = 0.0;  ///< the most processor time in which QUEST+ chose the next level, s
 };
 
 /// The most processor time between the end of a trial and the beginning of the next one, s: measures, answer, record, next level, and
@@ -346,7 +346,7 @@ std::pair<double, double> saved_trials(const MethodErrors& errors) {
 double max_bias_percent(const MethodErrors& errors) {
     double greatest = 0.0;
     for (std::size_t i = 0; i < trial_counts.size(); ++i)
-        if (trial_counts[i] >= biased_below)
+        if (trial_counts[i] >= min_trials_for_bias)
             greatest = std::max({greatest, std::abs(bias_percent(errors.quest[i])),
                                  std::abs(bias_percent(errors.stairs[i]))});
     return greatest;
@@ -409,7 +409,7 @@ int bench_experiments(const ExperimentsChoice& choice) {
     fmt::print(
         "QUEST+ needs {:.0f} % fewer trials than a staircase of {} (at least {:.0f} %, one-sided bound of 95 %, wanted: 20 %){}\n",
         saved, trial_counts[judged], saved_low, saved_low >= 20.0 ? "" : "  BEYOND");
-    fmt::print("largest bias from {} trials on: {:.2f} %   below {:.0f} %{}\n", biased_below, bias, max_bias,
+    fmt::print("largest bias from {} trials on: {:.2f} %   below {:.0f} %{}\n", min_trials_for_bias, bias, max_bias,
                bias < max_bias ? "" : "  BEYOND");
     fmt::print("\nintervals of 95 % after {} trials that cover, {} observers\n{:<18} {:>11} {:>11}\n", trial_counts.back(),
                choice.intervals, "", "bootstrap", "posterior");
@@ -427,15 +427,15 @@ int bench_experiments(const ExperimentsChoice& choice) {
 Verb experiments_verb() {
     return {
         "experiments",
-        "errors of the tests of experiments over simulated studies, and trials that adaptive methods need; exit code "
-        "1: one is "
-        "beyond its range",
+        "errors of the tests of experiments over simulated studies, and trials that adaptive methods need; exit code 1: "
+        "one is beyond its range",
         [](VerbOptions& verb) -> Action {
             const auto choice = std::make_shared<ExperimentsChoice>();
             verb.add("--studies", choice->studies, "simulated studies").range(100, 1'000'000).shows_default();
             verb.add("--subjects", choice->subjects, "of a study").range(4, 20).shows_default();
             verb.add("--observers", choice->observers, "of each adaptive method").range(20, 100'000).shows_default();
-            verb.add("--intervals", choice->intervals, "observers whose thresholds get intervals by the bootstrap and by the posterior")
+            verb.add("--intervals", choice->intervals,
+                     "observers whose thresholds get intervals by the bootstrap and by the posterior")
                 .range(10, 100'000)
                 .shows_default();
             verb.flag("--json", choice->json, "as JSON");

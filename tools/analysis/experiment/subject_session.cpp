@@ -29,7 +29,9 @@ psychophysics::QuestSettings quest_settings(const Protocol& protocol) {
     settings.slopes = protocol.method.slopes;
     settings.lapses = {protocol.method.lapse};
     // The false alarms of yes/no tasks are not known beforehand; the fit of the analysis estimates them.
-    settings.guess = protocol.response.kind == ResponseKind::choice ? protocol.response.guess() : 0.1;
+    settings.target = protocol.method.target;
+    settings.guess = protocol.response.kind == ResponseKind::choice ? protocol.response.guess()
+                                                                    : std::min(0.1, 0.5 * settings.target);
     const auto grid = [&](double step) {
         const int count = std::max(2, 1 + static_cast<int>(std::ceil((high - low) / step - 1e-9)));
         std::vector<double> values;
