@@ -515,8 +515,9 @@ std::vector<std::string> meanings_of(const FoundExperiment& f) {
             "Level with a probability of {:.3g}. {}", protocol.method.target,
             protocol.method.kind == experiment::Method::Kind::constant
                 ? "Maximum of the likelihood; intervals: parametric bootstrap."
-                : "Median of the posterior, intervals: its quantiles. The prior is uniform over the axis and over the "
-                  "slopes of the protocol; the posterior does not depend on the rule that chose the levels."));
+                : "Median of the posterior, intervals: its quantiles. The prior is uniform over the axis, over half of it "
+                  "more at each end, and over slopes from the least of the protocol to four times its greatest; the "
+                  "posterior does not depend on the rule that chose the levels."));
     const bool has_carry_over = std::ranges::any_of(
         f.analysis->comparisons, [](const AnalysedComparison& one) { return one.carry_over.has_value(); });
     if (f.mixed)
