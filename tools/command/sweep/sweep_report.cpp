@@ -4,7 +4,9 @@
 #include "tools/command/options.hpp"
 #include "tools/command/sweep/sweep_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/report/result/printers.hpp"
 #include "tools/report/sweep/sweep_page.hpp"
+#include "tools/report/sweep/sweep_result.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/terminal.hpp"
 
@@ -29,7 +31,9 @@ Action declare_sweep_report(VerbOptions& verb) {
         const analysis::Results results(folder);
         const std::filesystem::path out = choice->out.empty() ? folder.path() / "report.html" : choice->out;
         file::write_whole_file(out, report::sweep_page(results));
-        say(stdout, fmt::format("{}report: {}\n", results_text(results), out.string()));
+        say(stdout,
+            fmt::format("{}report: {}\n", report::text_of(report::sweep_state_fields().of(report::SweepState(results))),
+                        out.string()));
         return done;
     };
 }

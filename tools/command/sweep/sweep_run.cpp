@@ -8,6 +8,8 @@
 #include "tools/command/sweep/sweep_options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/report/result/printers.hpp"
+#include "tools/report/sweep/sweep_result.hpp"
 #include "tools/run/find_sweep.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/run/stop_signals.hpp"
@@ -37,18 +39,10 @@ int finish(const analysis::SweepFolder& folder, bool is_stopped, bool json) {
     const analysis::Results results(folder);
     results.write_csv(folder.path() / "results.csv");
     results.write_sqlite(folder.path() / "results.sqlite");
-    const std::string hash = fmt::format("{:016x}", results.hash());
-    if (json)
-        say(stdout, file::Json{{"points", results.size()},
-                               {"done", results.done()},
-                               {"failed", results.failed()},
-                               {"unfinished", results.unfinished()},
-                               {"hash", hash}}
-                            .dump(2) +
-                        "\n");
-    else
-        say(stdout,
-            fmt::format("{}results {}\n{}\n", results_text(results), hash, (folder.path() / "results.csv").string()));
+    const report::SweepState state(results);
+    const report::Result result = report::sweep_state_fields().of(state);
+    if (json) say(stdout, report::output_json(result).dump(2) + "\n");
+    else say(stdout, fmt::format("{}table: {}\n", report::text_of(result), (folder.path() / "results.csv").string()));
     if (is_stopped) say(stderr, "tactus: ended early; the same command continues\n");
     return results.done() == results.size() ? done : answer_is_no;
 }
@@ -112,7 +106,7 @@ int list_points(const analysis::SweepFolder& folder, bool json) {
         text += fmt::format("  {}: {}, {} to {}\n", axis.name, counted(axis.levels.size(), "level"),
                             axis.levels.front().text, axis.levels.back().text);
     for (std::size_t i = 0; i < std::min<std::size_t>(finished.size(), 3); ++i)
-        text += fmt::format("point {}: {}\n", i + 1, point_text(folder, i));
+        text += fmt::format("point {}: {}\n", i + 1, report::point_text(folder, i));
     say(stdout, text);
     return done;
 }
