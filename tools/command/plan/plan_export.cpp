@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan export: placed meshes, ITK transforms and 3D Slicer landmarks.
 #include "tools/analysis/plan/plan_export.hpp"
-#include "assets/file/json.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
-#include "tools/command/pose_text.hpp"
+#include "tools/report/plan/export_result.hpp"
+#include "tools/report/result/printers.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <memory>
+#include <string>
 
 namespace tactus::command {
 
 namespace {
-
-using file::Json;
 
 struct ExportChoice : PlanChoice {
     std::string format = "stl", transform_format = "tfm";
@@ -22,17 +20,9 @@ struct ExportChoice : PlanChoice {
 
 int export_plan(const ExportChoice& choice) {
     const plan::CasePlan plan = plan::load_case_plan(choice.plan);
-    Json written = Json::array();
     const analysis::ExportedPlan exported =
         analysis::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format, choice.transform_format);
-    for (const analysis::ExportedFragment& one : exported.written) {
-        written.push_back({{"fragment", one.name}, {"files", one.files}, {"pose", pose_json<Json>(one.pose)}});
-        if (!choice.result.json) fmt::print("{}\n", fmt::join(one.files, ", "));
-    }
-    if (choice.result.json) fmt::print("{}\n", written.dump(2));
-    if (!exported.left_out.empty())
-        fmt::print(stderr, "note: hidden, so not written: {}; show them with 'tactus plan unhide'\n",
-                   fmt::join(exported.left_out, ", "));
+    write_result(report::exported_plan_fields().of(exported), choice.result);
     return done;
 }
 
@@ -50,8 +40,10 @@ Action declare_plan_export(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_export_verb() {
-    return {"export", "write the shown fragments as placed, vessels, transforms and landmarks for other programs",
-            declare_plan_export};
+    return {.name = "export",
+            .about = "write the shown fragments as placed, vessels, transforms and landmarks for other programs",
+            .add = declare_plan_export,
+            .schema = [] { return report::schema_of_output({report::exported_plan_fields().schema()}); }};
 }
 
 }  // namespace tactus::command

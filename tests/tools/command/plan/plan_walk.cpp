@@ -67,7 +67,7 @@ TEST_CASE("a case from its fragments to a report and to files that other program
         const std::string out = file("out-" + transforms);
         const json written =
             json::parse(run("plan export " + plan + " --json --transform-format " + transforms + " -o " + out));
-        for (const json& one : written) {
+        for (const json& one : written["written"]) {
             const std::string stem = out + "/" + one["fragment"].get<std::string>();
             CAPTURE(stem);
             const Pose planned = test::pose_in(one["pose"]), read = transform::read_motion(stem + "." + transforms);
