@@ -154,7 +154,8 @@ void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run)
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary) {
     if (!options.pointshell) return;
     bone.points =
-        surface_points(bone, {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
+        surface_points(bone, {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature},
+                       options.run);
     bone.provenance["pointshell"] =
         fmt::format("{} mm{}", *options.pointshell / mm, options.pointshell_by_curvature ? ", by curvature" : "");
     summary.points = bone.points.size();

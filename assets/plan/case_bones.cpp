@@ -62,7 +62,7 @@ bool is_painted(std::span<const contact::SurfacePoint> points) {
 
 ResultKey key_of_points(const std::filesystem::path& path) {
     // To be raised with every change of code that changes which points a file gives: import, sampling.
-    constexpr int points_sampling = 2;
+    constexpr int points_sampling = 3;
     ResultKey key("points of a fragment", points_sampling);
     key.add_file(path);
     return key;
@@ -77,7 +77,7 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
         std::vector<contact::SurfacePoint>& points = loaded.bone.points;
         std::string ignored;  // points that are damaged are made again
         const bool has_points = !points.empty();
-        const auto sampled = [&] { return bone::surface_points(loaded.bone); };
+        const auto sampled = [&] { return bone::surface_points(loaded.bone, {}, run); };
         points = has_points ? sampled() : points_of_key(key_of_points(path), ignored, sampled);
         if (points.empty()) throw Error("has no surface");
         loaded.was_painted = is_painted(points);

@@ -32,6 +32,17 @@ struct Candidates {
     std::vector<double> area, radius;  // radius: minimum distance of accepted points
 };
 
+/// Calls use(first, end) for parts of a range, as jobs.
+template <class Use>
+void in_parts(std::size_t count, const RunJobs& run, const Use& use) {
+    constexpr std::size_t part = 8192;
+    run(static_cast<int>((count + part - 1) / part), [&](int job) {
+        leave_if_stopped();
+        const std::size_t first = static_cast<std::size_t>(job) * part;
+        use(first, std::min(count, first + part));
+    });
+}
+
 double area_of_triangle(const geometry::TriangleSurface& s, const std::array<int, 3>& t, Vec3& normal) {
     const auto at = [&](int n) { return s.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(n)])]; };
     normal = glm::cross(at(1) - at(0), at(2) - at(0));
@@ -94,30 +105,34 @@ NormalCone cone_of(std::span<const geometry::PackedCubes::Entry> points, double 
     return cone;
 }
 
-void follow_curvature(Candidates& all, const SurfaceSampling& sampling) {
+void follow_curvature(Candidates& all, const SurfaceSampling& sampling, const RunJobs& run) {
     const geometry::PackedCubes cubes(all.position, all.normal, sampling.spacing);
     // Within this turn the radius is at its greatest: cubes whose normals all are count for nothing.
     std::vector<NormalCone> cones(cubes.slots());
-    for (std::size_t s = 0; s < cones.size(); ++s) cones[s] = cone_of(cubes.in(s), sampling.max_turn);
+    in_parts(cones.size(), run, [&](std::size_t first, std::size_t end) {
+        for (std::size_t s = first; s < end; ++s) cones[s] = cone_of(cubes.in(s), sampling.max_turn);
+    });
     // A turn at which the radius is at its least; a little more, so that rounding changes nothing.
     const double tight = std::cos(std::min(1.01 * sampling.max_turn / finest, 3.1));
     const double radius2 = sampling.spacing * sampling.spacing;
-    geometry::PackedCubes::Block block;
-    for (const auto& own : cubes.all()) {
-        double least = 1.0;
-        for (const std::uint32_t slot : cubes.around(own.place, block).slots) {
-            if (glm::dot(own.normal, cones[slot].axis) >= cones[slot].enough) continue;
-            for (const auto& other : cubes.in(slot)) {
-                const Vec3 apart = other.place - own.place;
-                if (!(glm::dot(apart, apart) <= radius2)) continue;
-                const double along = glm::dot(own.normal, other.normal);
-                if (along > same_side) least = std::min(least, along);
+    in_parts(cubes.all().size(), run, [&](std::size_t first, std::size_t end) {
+        geometry::PackedCubes::Block block;
+        for (const auto& own : cubes.all().subspan(first, end - first)) {
+            double least = 1.0;
+            for (const std::uint32_t slot : cubes.around(own.place, block).slots) {
+                if (glm::dot(own.normal, cones[slot].axis) >= cones[slot].enough) continue;
+                for (const auto& other : cubes.in(slot)) {
+                    const Vec3 apart = other.place - own.place;
+                    if (!(glm::dot(apart, apart) <= radius2)) continue;
+                    const double along = glm::dot(own.normal, other.normal);
+                    if (along > same_side) least = std::min(least, along);
+                }
+                if (least < tight) break;
             }
-            if (least < tight) break;
+            const double turn = std::acos(std::clamp(least, -1.0, 1.0));
+            all.radius[own.index] *= std::clamp(sampling.max_turn / std::max(turn, 1e-9), finest, 1.0);
         }
-        const double turn = std::acos(std::clamp(least, -1.0, 1.0));
-        all.radius[own.index] *= std::clamp(sampling.max_turn / std::max(turn, 1e-9), finest, 1.0);
-    }
+    });
 }
 
 /// Indices in the order of their random numbers.
@@ -137,7 +152,7 @@ std::vector<std::uint32_t> drawn_order(std::size_t count, const Random& random) 
 
 /// Poisson-disc sampling by dart throwing: visits candidates in random order and accepts each one that keeps the
 /// distance to accepted ones, then adds every candidate's area to the nearest accepted point.
-std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling& sampling) {
+std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling& sampling, const RunJobs& run) {
     const std::size_t count = all.position.size();
     const std::vector<std::uint32_t> order = drawn_order(count, Random{mix(sampling.seed)});
     geometry::GrowingCubes cubes(count / 8, sampling.spacing);
@@ -173,27 +188,30 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     }
     const geometry::PackedCubes owners(places, normals, sampling.spacing);
     const double radius2 = sampling.spacing * sampling.spacing;
-    geometry::PackedCubes::Block block;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i % 1024 == 0) leave_if_stopped();
-        double nearest = std::numeric_limits<double>::infinity();
-        std::uint32_t owner = 0;
-        owners.around(all.position[i], block);
-        const auto apart2 = owners.apart2(all.position[i], block);
-        for (std::size_t s = 0; s < block.slots.size(); ++s) {
+    std::vector<std::uint32_t> owner_of(count, 0);
+    in_parts(count, run, [&](std::size_t first, std::size_t end) {
+        geometry::PackedCubes::Block block;
+        for (std::size_t i = first; i < end; ++i) {
+            double nearest = std::numeric_limits<double>::infinity();
+            std::uint32_t owner = 0;
+            owners.around(all.position[i], block);
+            const auto apart2 = owners.apart2(all.position[i], block);
+            for (std::size_t s = 0; s < block.slots.size(); ++s) {
             // A little more, so that rounding leaves out nothing.
-            if (apart2[s] > 1.001 * nearest) continue;
-            for (const auto& point : owners.in(block.slots[s])) {
-                const Vec3 apart = point.place - all.position[i];
-                const double d2 = glm::dot(apart, apart);
-                if (!(d2 <= radius2)) continue;
+                if (apart2[s] > 1.001 * nearest) continue;
+                for (const auto& point : owners.in(block.slots[s])) {
+                    const Vec3 apart = point.place - all.position[i];
+                    const double d2 = glm::dot(apart, apart);
+                    if (!(d2 <= radius2)) continue;
                 // Ties go to the lower index, for any order of visits.
-                const bool better = d2 < nearest || (d2 == nearest && point.index < owner);
-                if (better && glm::dot(all.normal[i], point.normal) >= same_side) nearest = d2, owner = point.index;
+                    const bool better = d2 < nearest || (d2 == nearest && point.index < owner);
+                    if (better && glm::dot(all.normal[i], point.normal) >= same_side) nearest = d2, owner = point.index;
+                }
             }
+            owner_of[i] = owner;
         }
-        points[owner].area += all.area[i];
-    }
+    });
+    for (std::size_t i = 0; i < count; ++i) points[owner_of[i]].area += all.area[i];
     return points;
 }
 
@@ -206,7 +224,7 @@ Vec3 normal_in(const volume::Grid& distance, const Vec3& position, const Vec3& o
 
 /// With a field, curvature comes from its normals: those of the triangles follow the noise of the samples.
 std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling,
-                                 const volume::Grid* distance) {
+                                 const volume::Grid* distance, const RunJobs& run) {
     if (!(sampling.spacing > 0.0) || !std::isfinite(sampling.spacing))
         throw Error("the spacing of a pointshell must be positive");
     double area = 0.0;
@@ -222,35 +240,41 @@ std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const
     all.radius.assign(all.position.size(), min_distance * sampling.spacing);
     if (sampling.follow_curvature) {
         if (distance)
-            for (std::size_t i = 0; i < all.position.size(); ++i)
-                all.normal[i] = normal_in(*distance, all.position[i], all.normal[i]);
-        follow_curvature(all, sampling);
+            in_parts(all.position.size(), run, [&](std::size_t first, std::size_t end) {
+                for (std::size_t i = first; i < end; ++i)
+                    all.normal[i] = normal_in(*distance, all.position[i], all.normal[i]);
+            });
+        follow_curvature(all, sampling, run);
     }
-    return thin_out(all, sampling);
+    return thin_out(all, sampling, run);
 }
 
 }  // namespace
 
-std::vector<SurfacePoint> sample_surface(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling) {
-    return spread(surface, sampling, nullptr);
+std::vector<SurfacePoint> sample_surface(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling,
+                                         const RunJobs& run) {
+    return spread(surface, sampling, nullptr, run);
 }
 
-std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const SurfaceSampling& sampling) {
+std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const SurfaceSampling& sampling,
+                                         const RunJobs& run) {
     const geometry::TriangleSurface surface = geometry::iso_surface(distance, 0.0f, /*inside_above=*/false);
-    if (surface.triangles.empty()) return spread(surface, sampling, nullptr);
-    std::vector<SurfacePoint> points = spread(surface, sampling, &distance);
-    for (SurfacePoint& point : points) {
-        for (int step = 0; step < 3; ++step) {
-            const volume::Sample here = sample_field(distance, point.position);
-            const double steep2 = glm::dot(here.gradient, here.gradient);
-            if (!here.inside || steep2 < 0.25) break;
-            const Vec3 move = here.gradient * (here.value / steep2);
-            // Where the field has a kink a step may go astray; the triangle's point is then close enough.
-            if (glm::length(move) > 0.5 * glm::length(distance.spacing)) break;
-            point.position -= move;
+    if (surface.triangles.empty()) return spread(surface, sampling, nullptr, run);
+    std::vector<SurfacePoint> points = spread(surface, sampling, &distance, run);
+    in_parts(points.size(), run, [&](std::size_t first, std::size_t end) {
+        for (SurfacePoint& point : std::span(points).subspan(first, end - first)) {
+            for (int step = 0; step < 3; ++step) {
+                const volume::Sample here = sample_field(distance, point.position);
+                const double steep2 = glm::dot(here.gradient, here.gradient);
+                if (!here.inside || steep2 < 0.25) break;
+                const Vec3 move = here.gradient * (here.value / steep2);
+                // Where the field has a kink a step may go astray; the triangle's point is then close enough.
+                if (glm::length(move) > 0.5 * glm::length(distance.spacing)) break;
+                point.position -= move;
+            }
+            point.normal = normal_in(distance, point.position, point.normal);
         }
-        point.normal = normal_in(distance, point.position, point.normal);
-    }
+    });
     return points;
 }
 

@@ -37,7 +37,7 @@ std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::pat
         std::vector<contact::SurfacePoint> points;
         if (is_mesh(path)) points = points_of_mesh(path);
         if (!points.empty()) return points;
-        return bone::surface_points(bone_of_file(path));
+        return bone::surface_points(bone_of_file(path), {}, on_threads());
     });
 }
 

@@ -7,6 +7,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/fit/as_scanned.hpp"
 #include "tools/analysis/bone/fragment_file.hpp"
+#include "tools/analysis/workers.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -34,7 +35,7 @@ void brush(std::vector<contact::SurfacePoint>& points, const std::vector<Vec3>& 
 
 Fragment painted_fragment(const std::filesystem::path& path, const FragmentPaint& paint) {
     Fragment fragment{bone_of_file(path), "file"};
-    fragment.bone.points = bone::surface_points(fragment.bone);
+    fragment.bone.points = bone::surface_points(fragment.bone, {}, on_threads());
     const auto is_painted = [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; };
     if (paint.file) {
         fragment.paint = paint.file->string();

@@ -8,6 +8,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tools/analysis/bone/fragment_file.hpp"
+#include "tools/analysis/workers.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -51,7 +52,7 @@ geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, con
 
 std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path, double spacing) {
     if (!is_mesh(path)) {
-        return bone::surface_points(bone_of_file(path), {.spacing = spacing});
+        return bone::surface_points(bone_of_file(path), {.spacing = spacing}, on_threads());
     }
     const mesh::Mesh mesh = mesh_of_file(path);
     std::vector<contact::SurfacePoint> points(mesh.vertices.size());
