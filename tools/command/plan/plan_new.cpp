@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/analysis/plan/plan_case.hpp"
 #include "tools/command/plan/plan_options.hpp"
+#include "tools/command/progress.hpp"
 #include "tools/counted.hpp"
 
 #include <fmt/format.h>
@@ -81,7 +82,12 @@ int make_plan(const NewChoice& choice) {
     plan::CasePlan plan;
     plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
     std::vector<analysis::CaseFragment> loaded;
-    for (const std::string& text : choice.names) add_file_of(plan, loaded, text, choice.plan.parent_path());
+    Progress progress;
+    for (std::size_t n = 0; n < choice.names.size(); ++n) {
+        progress.show(static_cast<double>(n) / static_cast<double>(choice.names.size()), choice.names[n]);
+        add_file_of(plan, loaded, choice.names[n], choice.plan.parent_path());
+    }
+    progress.clear();
     plan::save_case_plan(plan, choice.plan);
     if (!choice.result.json) fmt::print("{}: {}\n", choice.plan.string(), counted(plan.fragments.size(), "fragment"));
     return show_change(choice);
