@@ -170,12 +170,12 @@ double middle_opening(std::vector<Step> steps) {
 }  // namespace
 
 ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose,
-                               std::optional<double> told) {
+                               std::optional<double> given) {
     const Vec3 normal = opening_direction(*moving.face, *fixed.face, pose);
     const std::vector<Spot> mine = cortex_of(moving, pose), other = cortex_of(fixed, {});
     const FitSurface& face = *fixed.face;
     FitEnergy energy(*moving.face, face);
-    energy.law.kerf = told.value_or(0.0);
+    energy.law.kerf = given.value_or(0.0);
     FitPrecisionSum held(face.centre, face.centre);
     held.add(*moving.face, face, {face.centre, {1.0, 0.0, 0.0, 0.0}},
              energy.closed({pose.apply(moving.face->centre) - face.centre, pose.orientation}));
@@ -198,7 +198,7 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
         return seen;
     };
     // Only long strips, which have the least noise, may contradict a given kerf.
-    if (told) return opening_of(long_reach);
+    if (given) return opening_of(long_reach);
     ContourOpening found = opening_of(short_reach);
     // Where short strips are too few, or their noise is a large opening, curvature is not what matters.
     if (found.strips < independent || found.spread > max_spread) return opening_of(long_reach);
@@ -223,18 +223,18 @@ double relief_of(const FitSurface& face) {
 
 }  // namespace
 
-KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> told) {
+KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> given) {
     KerfEstimate made;
-    made.told = told;
-    if (told == 0.0) return made;
-    const double left = told.value_or(0.0);
-    const ContourOpening contour = contour_opening(moving, fixed, pose, told);
+    made.given = given;
+    if (given == 0.0) return made;
+    const double left = given.value_or(0.0);
+    const ContourOpening contour = contour_opening(moving, fixed, pose, given);
     made.contour = contour;
     const Vec3 mean = 0.5 * (fixed.face->mean_normal - pose.rotate(moving.face->mean_normal));
     const double cosine = std::clamp(glm::length(mean), 0.5, 1.0), missing = -contour.excess;
     made.kerf = std::max(0.0, left + missing * cosine);
     made.spread = contour.spread * cosine;
-    if (told) {
+    if (given) {
         const double limit = contour.spread < max_spread ? max_error : 2.0 * contour.spread;
         made.is_contradicted = std::abs(missing) > limit;
         made.is_too_wide = left * (1.0 / cosine - 1.0) > max_error;
@@ -256,7 +256,7 @@ FitVerdict include_kerf(const KerfEstimate& kerf, FitVerdict verdict, PoseBound&
     bound.face = std::hypot(bound.face, kerf.loss);
     bound.far = std::hypot(bound.far, kerf.loss);
     const bool is_refused = kerf.is_contradicted || kerf.is_too_wide;
-    if (is_refused && (kerf.told || verdict == FitVerdict::fit)) return FitVerdict::ambiguous;
+    if (is_refused && (kerf.given || verdict == FitVerdict::fit)) return FitVerdict::ambiguous;
     return kerf.is_open ? FitVerdict::uncertain : verdict;
 }
 

@@ -30,15 +30,15 @@ struct ContourOpening {
     int strips = 0;  ///< number of strips found on both halves
 };
 
-/// `pose`: of the moving half in the frame of the fixed one, as fitted with a kerf of `told` (m; none: 0). The error of
+/// `pose`: of the moving half in the frame of the fixed one, as fitted with a kerf of `given` (m; none: 0). The error of
 /// the fit itself (FitPrecisionSum) across the opening is part of `spread`. For preparation, not for a tick: it
 /// allocates.
 ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose,
-                               std::optional<double> told);
+                               std::optional<double> given);
 
 /// The kerf estimated from the contour, and the given one.
 struct KerfEstimate {
-    std::optional<double> told;  ///< m, mean width, as in FitSettings::kerf; the given kerf
+    std::optional<double> given;  ///< m, mean width, as in FitSettings::kerf; the given kerf
     double kerf = 0.0, spread = 0.0;  ///< m, mean width
     ContourOpening contour;  ///< source of the estimate; no strips: the contour was not used, or none was found
     /// True if the contour contradicts the kerf: it would shift the halves by more than half a millimetre. A contour
@@ -56,7 +56,7 @@ struct KerfEstimate {
     /// True if a loss is not excluded, and not contradicted either.
     bool is_open = false;
     /// True if the given kerf is ambiguous by more than half a millimetre: the opening of rough faces lies between
-    /// `told` and told / (mean cosine of their slopes).
+    /// `given` and given / (mean cosine of their slopes).
     bool is_too_wide = false;
 
     bool is_doubtful() const noexcept { return is_contradicted || is_open || is_too_wide; }
@@ -64,7 +64,7 @@ struct KerfEstimate {
 
 /// Checks two halves that were fitted with this kerf (m); without a value, no kerf was given. A given kerf of 0
 /// (nothing lost) is accepted without checking the contour.
-KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> told);
+KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> given);
 
 /// Adds the loss to the bound of a fit or an uncertain fit, and returns its verdict: `ambiguous` for a fit whose kerf is
 /// contradicted or too wide, `uncertain` for one whose kerf is open. An uncertain fit is `ambiguous` only if a given

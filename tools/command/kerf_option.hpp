@@ -11,8 +11,9 @@ namespace tactus::command {
 /// `kerf`: mm of bone lost along the faces.
 inline void add_kerf(VerbOptions& verb, std::optional<double>& kerf) {
     verb.add("--kerf", kerf,
-             "mm of bone that a blade or a break took away all along the faces; the fit leaves it open. 0: nothing is "
-             "lost, and no kerf is looked for (default: a fit that the cortex shows open is refused)")
+             "mm of bone lost along the whole faces, to a blade or by crushing; the fit leaves this gap open. 0: no "
+             "bone is lost, and the kerf is not checked (default: unknown; a fit is refused if the cortex beyond the "
+             "faces indicates a loss)")
         .range(0.0, 4.0);
 }
 

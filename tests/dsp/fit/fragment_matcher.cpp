@@ -185,7 +185,7 @@ TEST_CASE("dsp: chips off one side neither tilt a fit nor close it") {
     }
 }
 
-TEST_CASE("dsp: a kerf that is told stays open, from nearby and from anywhere") {
+TEST_CASE("dsp: a given kerf stays open, from nearby and from anywhere") {
     const Half near_side = bar_half(-1.0, relief(), {.gap = 0.8 * mm});
     const Half far_side = bar_half(1.0, relief(), {.gap = 0.8 * mm});
     const std::vector<fit::FragmentSurface> surfaces{surface_of(near_side), surface_of(far_side)};

@@ -32,11 +32,11 @@ struct Oblique {
         const Relief rough = rough_relief(3, height);
         return bar_half(side, [rough, slope](double y, double z) { return rough(y, z) + slope * y; }, bar);
     }
-    fit::KerfEstimate check(std::optional<double> told, const Pose& pose = {}) const {
-        return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, told);
+    fit::KerfEstimate check(std::optional<double> given, const Pose& pose = {}) const {
+        return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, given);
     }
-    fit::ContourOpening opening(const Pose& pose, std::optional<double> told = std::nullopt) const {
-        return fit::contour_opening({left.points, &moving}, {right.points, &fixed}, pose, told);
+    fit::ContourOpening opening(const Pose& pose, std::optional<double> given = std::nullopt) const {
+        return fit::contour_opening({left.points, &moving}, {right.points, &fixed}, pose, given);
     }
     /// m: mean width of a gap along the opening.
     double width(double opening) const { return opening * glm::length(0.5 * (fixed.mean_normal - moving.mean_normal)); }
@@ -48,7 +48,7 @@ struct Oblique {
 
 }  // namespace
 
-TEST_CASE("dsp: the cortex beyond an oblique break says that a told kerf is wrong") {
+TEST_CASE("dsp: the cortex beyond an oblique break contradicts a wrong given kerf") {
     const Oblique bar(0.8 * mm, 0.2 * mm);
     const double lost = bar.width(0.8 * mm);
     const fit::KerfEstimate right = bar.check(lost);
@@ -56,31 +56,31 @@ TEST_CASE("dsp: the cortex beyond an oblique break says that a told kerf is wron
     CHECK(right.kerf == Approx(0.7 * mm).margin(0.4 * mm));
     for (const double wrong : {-0.8 * mm, 1.5 * mm}) {
         CAPTURE(wrong);
-        const double told = std::max(0.01 * mm, lost + bar.width(wrong));
-        CHECK(bar.opening(bar.apart(wrong), told).excess == Approx(wrong).margin(0.4 * mm));
-        CHECK(bar.check(told, bar.apart(wrong)).is_contradicted);
+        const double given = std::max(0.01 * mm, lost + bar.width(wrong));
+        CHECK(bar.opening(bar.apart(wrong), given).excess == Approx(wrong).margin(0.4 * mm));
+        CHECK(bar.check(given, bar.apart(wrong)).is_contradicted);
     }
 }
 
-TEST_CASE("dsp: a kerf that is wrong by millimetres is found out as well as one that is wrong by one") {
+TEST_CASE("dsp: a given kerf that is wrong by millimetres is contradicted like one that is wrong by one") {
     const Oblique bar(0.5 * mm, 0.02 * mm, 0.8);
     for (const double wrong : {2.0 * mm, 3.5 * mm}) {
         CAPTURE(wrong);
-        const double told = bar.width(0.5 * mm + wrong);
-        CHECK(bar.opening(bar.apart(wrong), told).excess == Approx(wrong).epsilon(0.25));
-        CHECK(bar.check(told, bar.apart(wrong)).is_contradicted);
+        const double given = bar.width(0.5 * mm + wrong);
+        CHECK(bar.opening(bar.apart(wrong), given).excess == Approx(wrong).epsilon(0.25));
+        CHECK(bar.check(given, bar.apart(wrong)).is_contradicted);
     }
 }
 
-TEST_CASE("dsp: a kerf that is wrong by millimetres is found out on a bone of flat sides, of which only two tell it") {
+TEST_CASE("dsp: a kerf that is wrong by millimetres is contradicted on a bone of flat sides") {
     const Oblique bar(0.5 * mm, 0.02 * mm, 0.7, true);
     const double wrong = 4.5 * mm;  // lifts the sides by more than 2 mm
-    const double told = bar.width(0.5 * mm + wrong);
-    CHECK(bar.opening(bar.apart(wrong), told).excess == Approx(wrong).epsilon(0.25));
-    CHECK(bar.check(told, bar.apart(wrong)).is_contradicted);
+    const double given = bar.width(0.5 * mm + wrong);
+    CHECK(bar.opening(bar.apart(wrong), given).excess == Approx(wrong).epsilon(0.25));
+    CHECK(bar.check(given, bar.apart(wrong)).is_contradicted);
 }
 
-TEST_CASE("dsp: a kerf that nobody told is seen beside an oblique break, and none where none is") {
+TEST_CASE("dsp: without a given kerf, the cortex beside an oblique break shows a loss, and none where none is") {
     const Oblique lost(1.4 * mm, 0.1 * mm), whole(0.0, 0.8 * mm);
     CHECK_FALSE(whole.check(std::nullopt).is_doubtful());
     // Fitted without a kerf, the faces lie on each other.
@@ -88,7 +88,7 @@ TEST_CASE("dsp: a kerf that nobody told is seen beside an oblique break, and non
     const fit::KerfEstimate seen = lost.check(std::nullopt, closed);
     CHECK(seen.is_contradicted);
     CHECK(seen.kerf == Approx(lost.width(1.4 * mm)).margin(0.4 * mm));
-    // Who says that nothing is lost is believed.
+    // A given kerf of 0 is accepted.
     CHECK_FALSE(lost.check(0.0, closed).is_doubtful());
 }
 
@@ -148,19 +148,19 @@ TEST_CASE("dsp: without a kerf, flat faces are no fit, and rough ones that lost 
                 const Half left = bar_half(-1.0, closed, {.is_flat = is_flat}),
                            right = bar_half(1.0, relief, {.is_flat = is_flat});
                 const fit::FitSurface moving = left.surface(), fixed = right.surface();
-                const auto judged = [&](std::optional<double> told, fit::PoseBound& bound) {
+                const auto judged = [&](std::optional<double> given, fit::PoseBound& bound) {
                     const fit::KerfEstimate seen = fit::check_kerf(
-                        {left.points, &moving}, {right.points, &fixed}, {shift, {1.0, 0.0, 0.0, 0.0}}, told);
+                        {left.points, &moving}, {right.points, &fixed}, {shift, {1.0, 0.0, 0.0, 0.0}}, given);
                     UNSCOPED_INFO(seen.kerf / mm << " ± " << seen.spread / mm << " mm, loss " << seen.loss / mm);
                     return fit::include_kerf(seen, fit::FitVerdict::fit, bound);
                 };
-                fit::PoseBound bound{0.0, held, held, false}, told = bound;
+                fit::PoseBound bound{0.0, held, held, false}, none_lost = bound;
                 const fit::FitVerdict verdict = judged(std::nullopt, bound);
                 if (height < 0.1 * mm) CHECK(verdict != fit::FitVerdict::fit);
                 else rough_fits += verdict == fit::FitVerdict::fit && bound.face == held;
                 if (verdict != fit::FitVerdict::ambiguous) CHECK(bound.face >= lost);
-                CHECK(judged(0.0, told) == fit::FitVerdict::fit);
-                CHECK(told.face == held);
+                CHECK(judged(0.0, none_lost) == fit::FitVerdict::fit);
+                CHECK(none_lost.face == held);
             }
     // All of 18 but two square breaks of flat-sided bars, whose contour knows nothing.
     CHECK(rough_fits >= 16);
@@ -201,12 +201,12 @@ TEST_CASE("dsp: the bone that may be lost is in the bound of a fit, which it mak
     refused.is_contradicted = true;
     CHECK(included(refused, fit::FitVerdict::fit).first == fit::FitVerdict::ambiguous);
     CHECK(included(refused, fit::FitVerdict::uncertain).first == fit::FitVerdict::uncertain);
-    refused.told = 1.0 * mm;
+    refused.given = 1.0 * mm;
     CHECK(included(refused, fit::FitVerdict::uncertain).first == fit::FitVerdict::ambiguous);
     CHECK(included({}, fit::FitVerdict::fit).first == fit::FitVerdict::fit);
 }
 
-TEST_CASE("dsp: a nearly square break that nobody told a kerf of is no fit, because none is excluded") {
+TEST_CASE("dsp: without a given kerf, a nearly square break is no fit, because no loss is excluded") {
     const Oblique square(0.0, 0.1 * mm, 0.004);
     const fit::KerfEstimate seen = square.check(std::nullopt);
     CAPTURE(seen.kerf / mm, seen.spread / mm);
@@ -214,18 +214,18 @@ TEST_CASE("dsp: a nearly square break that nobody told a kerf of is no fit, beca
     CHECK_FALSE(square.check(0.0).is_doubtful());
 }
 
-TEST_CASE("dsp: a contour that hardly knows the opening contradicts a told kerf only when it is sure") {
+TEST_CASE("dsp: an uninformative contour contradicts a given kerf only by two standard deviations") {
     const Oblique square(0.0, 0.1 * mm, 0.004);
     const fit::ContourOpening seen = square.opening({});
     CAPTURE(seen.excess / mm, seen.spread / mm);
     REQUIRE(seen.spread > 1.0 * mm);
     REQUIRE(std::abs(seen.excess) > 0.5 * mm);
     // An error across the break is an opening of many millimetres: a small one may be the faces', a large one is none.
-    const auto told_beside = [&](double aside) {
+    const auto is_contradicted_beside = [&](double aside) {
         return square.check(0.05 * mm, {Vec3(0.0, aside, 0.0), {1.0, 0.0, 0.0, 0.0}}).is_contradicted;
     };
-    CHECK_FALSE(told_beside(0.0));
-    CHECK(told_beside(0.3 * mm));
+    CHECK_FALSE(is_contradicted_beside(0.0));
+    CHECK(is_contradicted_beside(0.3 * mm));
 }
 
 TEST_CASE("dsp: a kerf opens along the plane of the break, wherever the relief leans at its rim") {

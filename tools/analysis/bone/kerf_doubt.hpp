@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explains a doubt about the bone lost between two fragments, with the next step.
+// Explains why the bone lost between two fragments is uncertain, and states the next step.
 #pragma once
 
 #include "dsp/fit/kerf_check.hpp"
@@ -8,7 +8,7 @@
 
 namespace tactus::analysis {
 
-/// For an estimate that is doubtful.
+/// Returns the message for a doubtful estimate (KerfEstimate::is_doubtful).
 std::string kerf_doubt(const fit::KerfEstimate& kerf);
 
 }  // namespace tactus::analysis

@@ -110,8 +110,8 @@ private:
         }
     }
 
-    /// What the contours of all pairs say together of a kerf that nobody told. Returns whether a pair that was refused for
-    /// one may be tried again.
+    /// Combines the contours of all pairs if no kerf was given. Returns whether a pair that was refused because of a
+    /// possible kerf may be tried again.
     bool look_at_all_openings() {
         std::vector<fit::ContourOpening> all;
         for (const auto& [pair, opening] : openings_) all.push_back(opening);

@@ -123,7 +123,7 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
                                                          fragment(made.partner).map);
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
     if (has_place() && (found.kerf = estimate_kerf(found, arrangement))) {
-        if (!found.kerf->told && !found.kerf->is_flat && case_opening.excludes_kerf(found.kerf->contour)) {
+        if (!found.kerf->given && !found.kerf->is_flat && case_opening.excludes_kerf(found.kerf->contour)) {
             found.kerf->is_contradicted = found.kerf->is_open = false;
             found.kerf->loss = 0.0;
         }

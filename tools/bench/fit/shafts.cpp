@@ -39,8 +39,8 @@ struct ShaftsChoice {
     double size = 1.0;  // of the bone
     double voxel = 0.35;  // mm, of the scans
     int shapes = 0;  // of the bones; 0: the library's fibula alone
-    std::optional<double> told_kerf;  // mm
-    bool told = false, json = false;
+    std::optional<double> given_kerf;  // mm
+    bool given = false, json = false;
     std::filesystem::path bone;
 };
 
@@ -76,9 +76,9 @@ std::pair<Vec3, double> middle_of_paint(const analysis::CaseFragment& fragment) 
     return {area > 0.0 ? sum / area : Vec3(0.0), area};
 }
 
-std::optional<double> told_kerf(const ShaftsChoice& choice) {
-    if (choice.told_kerf) return *choice.told_kerf * 1e-3;
-    if (choice.told) return choice.kerf * 1e-3;
+std::optional<double> given_kerf(const ShaftsChoice& choice) {
+    if (choice.given_kerf) return *choice.given_kerf * 1e-3;
+    if (choice.given) return choice.kerf * 1e-3;
     return std::nullopt;
 }
 
@@ -100,7 +100,7 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
         fragments.push_back(std::move(loaded));
         place.push_back(one.place);
     });
-    analysis::PlanMatching matching(std::move(fragments), analysis::FitWay{told_kerf(choice)});
+    analysis::PlanMatching matching(std::move(fragments), analysis::FitWay{given_kerf(choice)});
     const analysis::CaseFragment& moving = matching.fragment(1);
     const std::pair<Vec3, double> paint = middle_of_paint(moving);
     const Vec3& face = paint.first;
@@ -138,12 +138,12 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
     return shaft;
 }
 
-/// Of what the contour said of a kerf; nothing of a shaft that was not judged so far.
+/// The kerf that the contour indicates; empty if the faces do not fit.
 std::string words_of(const std::optional<fit::KerfEstimate>& kerf) {
     if (!kerf) return "";
-    if (kerf->told == 0.0) return ", no kerf looked for";
-    if (kerf->contour.strips == 0) return ", no contour seen";
-    return fmt::format(", kerf seen {:.2f} ± {:.2f} mm", kerf->kerf * 1e3, kerf->spread * 1e3);
+    if (kerf->given == 0.0) return ", kerf not checked";
+    if (kerf->contour.strips == 0) return ", no contour found";
+    return fmt::format(", kerf estimated at {:.2f} ± {:.2f} mm", kerf->kerf * 1e3, kerf->spread * 1e3);
 }
 
 double part_of(std::vector<double> values, double share) {
@@ -325,8 +325,8 @@ Verb shafts_verb() {
             verb.add("--roughness", choice->roughness, "mm rms of the faces' relief; 0.1 is a saw cut")
                 .shows_default()
                 .range(0.0, 4.0);
-            verb.flag("--told", choice->told, "the fit knows the kerf");
-            verb.add("--told-kerf", choice->told_kerf, "mm of kerf that the fit is told, right or wrong")
+            verb.flag("--given", choice->given, "give the true kerf to the fit");
+            verb.add("--given-kerf", choice->given_kerf, "mm of kerf that is given to the fit, true or false")
                 .range(0.0, 4.0);
             verb.add("--size", choice->size, "of the bone, as a share: small bones have small faces")
                 .shows_default()

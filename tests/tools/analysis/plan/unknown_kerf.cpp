@@ -16,7 +16,7 @@ using namespace tactus;
 namespace {
 
 /// Halves of a bar that was broken nearly square across it, one of them scanned elsewhere.
-analysis::PlanMatch match_of_square_break(std::optional<double> told) {
+analysis::PlanMatch match_of_square_break(std::optional<double> given) {
     const test::Relief rough = test::rough_relief(3, 0.3 * mm);
     const auto relief = [&rough](double y, double z) { return rough(y, z) + 0.004 * y; };
     const Vec3 scanned(4.0 * mm, 2.0 * mm, 0.0);
@@ -29,7 +29,7 @@ analysis::PlanMatch match_of_square_break(std::optional<double> told) {
         loaded.map = contact::make_voxmap(std::move(half.distance));
         fragments.push_back(std::move(loaded));
     }
-    analysis::PlanMatching matching(std::move(fragments), analysis::FitWay{told});
+    analysis::PlanMatching matching(std::move(fragments), analysis::FitWay{given});
     const fit::Arrangement arrangement(2);
     return matching.near(arrangement, 1, analysis::Partners::all);
 }

@@ -74,13 +74,13 @@ TEST_CASE("snap calls halves that lost bone between them a fit only if its bound
         const Vec3 middle = pose_in(truth["fragments"][1]["pose"]).inverse().apply(Vec3(0.0));
         return glm::length(pose_in(fit["pose"]).apply(middle) - wanted.apply(middle));
     };
-    const json open = json::parse(folder.tactus(snap).out), told = json::parse(folder.tactus(snap + " --kerf 1.6").out);
-    CAPTURE(open.dump(1), told.dump(1), error_of(open) / mm, error_of(told) / mm);
+    const json open = json::parse(folder.tactus(snap).out), given = json::parse(folder.tactus(snap + " --kerf 1.6").out);
+    CAPTURE(open.dump(1), given.dump(1), error_of(open) / mm, error_of(given) / mm);
     CHECK(error_of(open) > 1.0 * mm);
     CHECK(open["verdict"] != "fit");
     if (open["verdict"] == "uncertain") CHECK(open["bound"]["face_mm"].get<double>() * mm > error_of(open));
     CHECK(folder.tactus(snap.substr(0, snap.rfind(' '))).out.find("--kerf") != std::string::npos);
-    CHECK(error_of(told) < 0.5 * mm);
+    CHECK(error_of(given) < 0.5 * mm);
 }
 
 TEST_CASE("halves that touch in one scan are not called a fit where the scan has them", "[long]") {
