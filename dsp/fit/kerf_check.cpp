@@ -253,6 +253,7 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
 }
 
 FitVerdict include_kerf(const KerfEstimate& kerf, FitVerdict verdict, PoseBound& bound) noexcept {
+    if (verdict != FitVerdict::fit && verdict != FitVerdict::uncertain) return verdict;
     bound.face = std::hypot(bound.face, kerf.loss);
     bound.far = std::hypot(bound.far, kerf.loss);
     const bool is_refused = kerf.is_contradicted || kerf.is_too_wide;

@@ -67,8 +67,9 @@ struct KerfEstimate {
 KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> given);
 
 /// Adds the loss to the bound of a fit or an uncertain fit, and returns its verdict: `ambiguous` for a fit whose kerf is
-/// contradicted or too wide, `uncertain` for one whose kerf is open. An uncertain fit is `ambiguous` only if a given
-/// kerf is; without one, its bound includes the loss.
+/// contradicted or too wide, `uncertain` for one whose kerf is open. An uncertain fit becomes `ambiguous` only because of
+/// a given kerf; without one, its bound includes the loss. Other verdicts have no place whose kerf matters: neither they
+/// nor their bounds change.
 FitVerdict include_kerf(const KerfEstimate& kerf, FitVerdict verdict, PoseBound& bound) noexcept;
 
 /// Common estimate of the bone lost between each of several pairs, from all their contours. The pairs of one case broke

@@ -206,6 +206,23 @@ TEST_CASE("dsp: the bone that may be lost is in the bound of a fit, which it mak
     CHECK(included({}, fit::FitVerdict::fit).first == fit::FitVerdict::fit);
 }
 
+TEST_CASE("dsp: a kerf changes neither a verdict without a place nor its bound") {
+    fit::KerfEstimate open, refused;
+    open.loss = 0.4 * mm;
+    open.is_open = true;
+    refused.given = 1.0 * mm;
+    refused.is_contradicted = true;
+    for (const auto verdict : {fit::FitVerdict::ambiguous, fit::FitVerdict::sliding, fit::FitVerdict::no_match,
+                               fit::FitVerdict::blocked})
+        for (const fit::KerfEstimate& kerf : {open, refused}) {
+            CAPTURE(fit::name_of(verdict), kerf.is_open);
+            fit::PoseBound bound{0.01, 0.3 * mm, 0.4 * mm, false};
+            CHECK(fit::include_kerf(kerf, verdict, bound) == verdict);
+            CHECK(bound.face == 0.3 * mm);
+            CHECK(bound.far == 0.4 * mm);
+        }
+}
+
 TEST_CASE("dsp: without a given kerf, a nearly square break is no fit, because no loss is excluded") {
     const Oblique square(0.0, 0.1 * mm, 0.004);
     const fit::KerfEstimate seen = square.check(std::nullopt);
