@@ -32,7 +32,9 @@ constexpr double max_spread = 1e-3;  // m: what a contour says that knows less m
 // Of the standard deviation. Measured, not derived: with `tactus-bench shafts --count 20`, with and without chips, none of
 // 40 that had lost 0.8 mm passed; of 40 whole ones with chips, none was refused for a kerf.
 constexpr double share_of_spread = 0.5;
-constexpr double flat_relief = 0.25e-3;  // m rms; a saw leaves 0.1 mm
+constexpr double nearby = 3e-3;  // m: relief is measured about planes through the points within this distance
+constexpr double max_touch = 1e-3;  // m: farther from each other, faces do not touch
+constexpr double flat_relief = 0.1e-3;  // m rms, shared
 constexpr double flat_loss = 3e-3;  // m: 95 % of losses that are exponentially distributed around 1 mm, the width of a blade
 
 struct Spot {
@@ -211,14 +213,66 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
 
 namespace {
 
-/// m rms: heights of a face above its plane.
-double relief_of(const FitSurface& face) {
-    double squares = 0.0;
-    for (std::size_t n = 0; n < face.position.size(); ++n) {
-        const double height = glm::dot(face.position[n], face.plane_normal);
-        squares += face.share[n] * height * height;
+/// A point of the moving face: its place in the opening's plane in units of `nearby`, its height along the opening, and
+/// that of the fixed face below it.
+struct Touch {
+    double u, v, own, other;
+};
+
+/// The points of the moving face that lie on the fixed one.
+std::vector<Touch> touches_of(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) {
+    const Vec3 normal = opening_direction(moving, fixed, pose);
+    const Vec3 any = std::abs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+    const Vec3 u = glm::normalize(glm::cross(normal, any)), v = glm::cross(normal, u);
+    const Pose into = between_centres(moving, fixed, pose);
+    std::vector<Touch> touches;
+    for (const Vec3& position : moving.position) {
+        const Vec3 p = into.apply(position);
+        const volume::Sample gap = fixed.field.sample(p);
+        if (!gap.inside || !(std::abs(gap.value) < max_touch) || !fixed.is_painted_near(p)) continue;
+        const double height = glm::dot(p, normal);
+        touches.push_back({glm::dot(p, u) / nearby, glm::dot(p, v) / nearby, height, height - gap.value});
     }
-    return std::sqrt(squares);
+    return touches;
+}
+
+/// The covariance of both heights about planes through the points around one, m². None for too few points.
+std::optional<double> covariance_around(const Touch& centre, const std::vector<Touch>& touches) {
+    constexpr std::size_t terms = 3, min_around = 10;  // 1, u, v
+    std::vector<double> matrix(terms * terms, 0.0), own(terms, 0.0), other(terms, 0.0);
+    double products = 0.0;
+    std::size_t count = 0;
+    for (const Touch& t : touches) {
+        const double row[terms] = {1.0, t.u - centre.u, t.v - centre.v};
+        if (!(row[1] * row[1] + row[2] * row[2] < 1.0)) continue;
+        const double mine = t.own - centre.own, its = t.other - centre.own;
+        ++count;
+        products += mine * its;
+        for (std::size_t a = 0; a < terms; ++a) {
+            own[a] += row[a] * mine;
+            other[a] += row[a] * its;
+            for (std::size_t b = 0; b < terms; ++b) matrix[a * terms + b] += row[a] * row[b];
+        }
+    }
+    if (count < min_around) return std::nullopt;
+    for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
+    std::vector<double> plane = own;
+    if (!geometry::solve_positive(matrix, plane)) return std::nullopt;
+    for (std::size_t a = 0; a < terms; ++a) products -= plane[a] * other[a];
+    return products / static_cast<double>(count - terms);
+}
+
+/// m rms: relief that both faces share.
+double shared_relief(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) {
+    const std::vector<Touch> touches = touches_of(moving, fixed, pose);
+    const std::size_t stride = 1 + touches.size() / max_paint;
+    double sum = 0.0, count = 0.0;
+    for (std::size_t n = 0; n < touches.size(); n += stride)
+        if (const auto covariance = covariance_around(touches[n], touches)) {
+            sum += *covariance;
+            count += 1.0;
+        }
+    return count > 0.0 ? std::sqrt(std::max(0.0, sum / count)) : 0.0;
 }
 
 }  // namespace
@@ -244,7 +298,7 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
         const double doubt = share_of_spread * contour.spread, seen = std::max(0.0, missing);
         const bool has_contour = contour.strips >= independent;
         made.is_contradicted = has_contour && missing > std::max(max_error, doubt);
-        made.is_flat = std::min(relief_of(*moving.face), relief_of(*fixed.face)) < flat_relief;
+        made.is_flat = shared_relief(*moving.face, *fixed.face, pose) < flat_relief;
         if (has_contour && seen + doubt > max_error) made.loss = seen + 2.0 * contour.spread;
         if (made.is_flat) made.loss = std::max(made.loss, flat_loss);
         made.is_open = !made.is_contradicted && made.loss > 0.0;

@@ -7,6 +7,11 @@
 // disagreement of the strips, and of strips of two lengths, because curved cortex is not a parabola. A square break
 // through a prism leaves no step at any width of the gap; the estimate then has a large spread. Flat faces slide along
 // each other until the contour has no step, so it excludes no loss between them.
+//
+// Rough faces that interlock are the evidence that no bone is lost. Only relief that both faces share counts, measured
+// about planes through the points within 3 mm. A freehand saw cut is wavy, and its waves close over the lost bone like
+// a whole break; but the waves are long, because the blade must follow them, and the grain that the teeth leave differs
+// between the faces. The rms height of a whole face contains the waves, and that of one face its grain.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -45,9 +50,8 @@ struct KerfEstimate {
     /// with a standard deviation of 1 mm or more must give a shift of two standard deviations instead. Without a given
     /// kerf, the shift must also exceed half a standard deviation.
     bool is_contradicted = false;
-    /// True if no kerf was given and a face has less than 0.25 mm of relief (rms), as a saw leaves it. Two faces share a
-    /// greater relief only if nothing is lost, or a layer of even thickness with the same relief, which neither a saw nor
-    /// crushing removes.
+    /// True if no kerf was given and the faces share less than 0.1 mm of local relief (rms), as after a saw cut. They
+    /// share more only if nothing is lost, or a layer of even thickness whose relief is shorter than a blade can follow.
     bool is_flat = false;
     /// m along the opening: largest loss that is not excluded, if no kerf was given. Beside a contour whose estimate plus
     /// half a standard deviation exceeds half a millimetre: the estimate plus two standard deviations. Between flat faces:

@@ -301,3 +301,103 @@ TEST_CASE("dsp: the pairs of a case say together that nothing is lost where one 
     const std::vector<fit::ContourOpening> lost{sure, sure, sure, vague};
     CHECK_FALSE(fit::common_opening(lost).excludes_kerf(vague));
 }
+
+namespace {
+
+/// A cut along a wave. The blade removes `width` across its path, and leaves a different grain on either face.
+struct WavyCut {
+    double wavelength, amplitude, direction, slope, width;  ///< m, m, rad, m/m, m
+    static constexpr double grain = 0.1 * mm;  // rms
+
+    /// m, least radius of curvature of the path.
+    double radius() const {
+        const double k = 2.0 * std::numbers::pi / wavelength;
+        return 1.0 / std::max(1e-9, k * k * amplitude);
+    }
+    Half half(double side) const {
+        const double k = 2.0 * std::numbers::pi / wavelength;
+        const double ky = k * std::cos(direction), kz = k * std::sin(direction);
+        const Random random{side < 0.0 ? 5u : 6u};
+        const auto height = [*this, side, ky, kz, random](double y, double z) {
+            // The face lies half a blade from the path, along the path's normal. Iterates to the path's point.
+            double at_y = y, at_z = z, rise = 0.0, steep = 1.0;
+            for (int pass = 0; pass < 10; ++pass) {
+                const double turn = ky * at_y + kz * at_z + 0.7;
+                const double dy = slope + amplitude * ky * std::cos(turn), dz = amplitude * kz * std::cos(turn);
+                steep = std::sqrt(1.0 + dy * dy + dz * dz);
+                rise = slope * at_y + amplitude * std::sin(turn);
+                at_y = y + side * 0.5 * width * dy / steep;
+                at_z = z + side * 0.5 * width * dz / steep;
+            }
+            double own = 0.0;
+            for (std::uint64_t n = 0; n < 12; ++n) {
+                const double q = 2.0 * std::numbers::pi / ((1.0 + 2.0 * random.uniform(3 * n)) * mm),
+                             way = 2.0 * std::numbers::pi * random.uniform(3 * n + 1);
+                own += std::sin(q * (std::cos(way) * y + std::sin(way) * z) +
+                                2.0 * std::numbers::pi * random.uniform(3 * n + 2));
+            }
+            return rise + side * 0.5 * width / steep + grain * own / std::sqrt(6.0);
+        };
+        // All samples of a row along the bar have the same y and z.
+        double last_y = 1e9, last_z = 1e9, last = 0.0;
+        return bar_half(side, [=](double y, double z) mutable {
+            if (y == last_y && z == last_z) return last;
+            last_y = y, last_z = z;
+            return last = height(y, z);
+        });
+    }
+};
+
+/// Checks every `stride`-th cut: closed over the lost bone, it is no fit whose bound is less than the loss.
+void check_wavy_cuts(int stride) {
+    constexpr double held = 0.15 * mm;  // by the faces alone
+    constexpr double sharpest = 6.0 * mm;  // radius that a blade can follow
+    int number = 0;
+    for (const double wavelength : {8.0 * mm, 12.0 * mm, 16.0 * mm, 24.0 * mm, 36.0 * mm, 60.0 * mm})
+        for (const double amplitude : {0.0, 0.2 * mm, 0.4 * mm, 0.8 * mm, 1.2 * mm, 1.5 * mm})
+            for (const double slope : {0.1, 0.35}) {
+                constexpr double losses[] = {0.3 * mm, 1.0 * mm, 1.5 * mm, 0.6 * mm};
+                const WavyCut cut{wavelength, amplitude, 0.5 * (number % 4), slope, losses[number % 4]};
+                if (cut.radius() < sharpest || number++ % stride != 0) continue;
+                CAPTURE(wavelength / mm, amplitude / mm, cut.direction, slope, cut.width / mm);
+                const Half left = cut.half(-1.0), right = cut.half(1.0);
+                const fit::FitSurface moving = left.surface(), fixed = right.surface();
+                fit::FitEnergy energy(moving, fixed);
+                const Vec3 shift = cut.width * glm::normalize(Vec3(1.0, -slope, 0.0));
+                const Pose closed = fit::settle(energy, {shift, {1.0, 0.0, 0.0, 0.0}}, fit::FitSettings{});
+                const double error = glm::length(closed.apply(moving.centre) - moving.centre);
+                CHECK(error > 0.7 * cut.width);
+                const fit::KerfEstimate seen =
+                    fit::check_kerf({left.points, &moving}, {right.points, &fixed}, closed, std::nullopt);
+                fit::PoseBound bound{0.0, held, held, false};
+                const fit::FitVerdict verdict = fit::include_kerf(seen, fit::FitVerdict::fit, bound);
+                CAPTURE(error / mm, seen.kerf / mm, seen.spread / mm, bound.face / mm);
+                CHECK(verdict != fit::FitVerdict::fit);
+                CHECK((verdict == fit::FitVerdict::ambiguous || bound.face >= error));
+            }
+    CHECK(number > 40);
+}
+
+}  // namespace
+
+// Costly: seven pairs of halves.
+TEST_CASE("dsp: without a kerf, a wavy saw cut is no fit", "[slow]") { check_wavy_cuts(8); }
+
+// Costly: 54 pairs of halves.
+TEST_CASE("dsp: without a kerf, no wavy saw cut of any length and height is a fit", "[long]") { check_wavy_cuts(1); }
+
+// Costly: eight pairs of halves.
+TEST_CASE("dsp: without a kerf, faces that share 0.2 mm of relief are a fit", "[slow]") {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed)
+        for (const double slope : {0.2, 0.35}) {
+            const Relief rough = rough_relief(seed, 0.22 * mm);
+            const auto relief = [&](double y, double z) { return rough(y, z) + slope * y; };
+            const Half left = bar_half(-1.0, relief), right = bar_half(1.0, relief);
+            const fit::FitSurface moving = left.surface(), fixed = right.surface();
+            const fit::KerfEstimate seen =
+                fit::check_kerf({left.points, &moving}, {right.points, &fixed}, {}, std::nullopt);
+            CAPTURE(seed, slope, seen.kerf / mm, seen.spread / mm, seen.loss / mm);
+            CHECK_FALSE(seen.is_flat);
+            CHECK_FALSE(seen.is_doubtful());
+        }
+}
