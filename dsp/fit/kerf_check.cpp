@@ -294,12 +294,13 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
         made.is_too_wide = left * (1.0 / cosine - 1.0) > max_error;
     } else {
         // Without lost bone, faces touch whatever the contour beside them: ridges that end there also cause steps, which
-        // `spread` includes.
-        const double doubt = share_of_spread * contour.spread, seen = std::max(0.0, missing);
+        // `spread` includes. Touching faces are not too far apart: an estimate of that is wrong by at least as much.
+        const double seen = std::max(0.0, missing), spread = std::hypot(contour.spread, seen - missing);
+        const double doubt = share_of_spread * spread;
         const bool has_contour = contour.strips >= independent;
         made.is_contradicted = has_contour && missing > std::max(max_error, doubt);
         made.is_flat = shared_relief(*moving.face, *fixed.face, pose) < flat_relief;
-        if (has_contour && seen + doubt > max_error) made.loss = seen + 2.0 * contour.spread;
+        if (has_contour && seen + doubt > max_error) made.loss = seen + 2.0 * spread;
         if (made.is_flat) made.loss = std::max(made.loss, flat_loss);
         made.is_open = !made.is_contradicted && made.loss > 0.0;
     }
