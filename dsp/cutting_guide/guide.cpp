@@ -116,17 +116,12 @@ private:
     void note_trimmed(const std::vector<ThinWall>& thin) {
         std::string letters;
         for (std::size_t n = 0; n < slots_.size(); ++n)
-            if (std::ranges::any_of(thin, [&](const ThinWall& w) { return near_slot(w.at) == n; }))
+            if (std::ranges::any_of(thin, [&](const ThinWall& w) {
+                    return nearest_slot(made_.slots, made_.frame.apply(w.at)) == n;
+                }))
                 letters += fmt::format("{}{}", letters.empty() ? "" : ", ", design_.cuts[n].letter);
         made_.notes.push_back(fmt::format("parts thinner than {:.1f} mm near slot {} are left out",
                                           set_.min_thickness() / mm, letters));
-    }
-
-    /// The slot whose plane is nearest.
-    std::size_t near_slot(const Vec3& p) const {
-        return static_cast<std::size_t>(
-            std::ranges::min_element(slots_, {}, [&](const Slot& s) { return std::abs(s.out_of(p)); }) -
-            slots_.begin());
     }
 
     /// A slot of which too little is left beside the kept one becomes a ledge.
@@ -560,6 +555,16 @@ private:
 };
 
 }  // namespace
+
+std::size_t nearest_slot(std::span<const MadeSlot> slots, const Vec3& p) {
+    const auto distance = [&](const MadeSlot& s) {
+        const Vec3 r = p - s.middle;
+        const auto beyond = [](double value, double half) { return std::max(0.0, std::abs(value) - half); };
+        return glm::length(Vec3(glm::dot(r, s.cut.plane.normal), beyond(glm::dot(r, s.deep), 0.5 * s.depth),
+                                beyond(glm::dot(r, s.wide), 0.5 * s.length)));
+    };
+    return static_cast<std::size_t>(std::ranges::min_element(slots, {}, distance) - slots.begin());
+}
 
 double rail_height(const GuideSettings& s) { return (3.0 + 4.0 * 0.3) * s.text_height; }
 

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,11 @@ MadeGuide make_guide(const GuideDesign& design, const RunJobs& run);
 inline constexpr double wall_slack = 0.1e-3;
 /// Of a slot's wall, this share must be there: a placeholder.
 inline constexpr double min_wall_share = 0.5;
+
+/// The index of the slot whose wall on the kept side is nearest to `p` (frame of the bone); there must be one. Distances
+/// to the walls, not to their planes: the planes of two cuts cross, so that beyond the crossing the nearer plane is that
+/// of the farther slot.
+std::size_t nearest_slot(std::span<const MadeSlot> slots, const Vec3& p);
 
 /// Base lines of the rows of text on the rail, m from its top: the first text, letters, the second text.
 std::array<double, 3> text_rows(const GuideSettings& settings);

@@ -285,3 +285,20 @@ TEST_CASE("a base on a flat bone ends with round edges") {
     for (const Vec3& v : made.surface.vertices)
         if (v.x > 1e-6 && v.y > 0.0) CHECK(v.x < design.settings.slot_width() + design.settings.wall + 0.1 * mm);
 }
+
+TEST_CASE("the nearest slot is that of the nearest wall, where the planes of two slots have crossed") {
+    // Two walls, 10 mm high and wide, that lean towards each other by 45° and cross 10 mm above their middles.
+    const auto slot = [](double x, double lean) {
+        MadeSlot made;
+        made.middle = Vec3(x, 0.0, 0.0);
+        made.cut.plane = {made.middle, glm::normalize(Vec3(1.0, 0.0, -lean))};
+        made.deep = glm::normalize(Vec3(lean, 0.0, 1.0)), made.wide = glm::cross(made.cut.plane.normal, made.deep);
+        made.depth = made.length = 10.0 * mm;
+        return made;
+    };
+    const std::vector<MadeSlot> slots{slot(-10.0 * mm, 1.0), slot(10.0 * mm, -1.0)};
+    CHECK(nearest_slot(slots, Vec3(-9.0 * mm, 0.0, 0.0)) == 0);
+    CHECK(nearest_slot(slots, Vec3(9.0 * mm, 2.0 * mm, 1.0 * mm)) == 1);
+    // On the plane of the second, but beside the wall of the first.
+    CHECK(nearest_slot(slots, Vec3(-6.0 * mm, 0.0, 26.0 * mm)) == 0);
+}

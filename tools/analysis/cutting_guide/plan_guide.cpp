@@ -266,14 +266,8 @@ std::optional<double> hole_to_cut(const GuideHole& hole, const GuideCut& cut) {
 
 /// "near slot C": the one whose walls are nearest.
 std::string near_slot(const PlannedGuide& guide, const Vec3& p) {
-    const auto away = [&](const cutting_guide::MadeSlot& s) {
-        const Vec3 r = p - s.middle;
-        const auto beyond = [](double value, double half) { return std::max(0.0, std::abs(value) - half); };
-        return glm::length(Vec3(glm::dot(r, s.cut.plane.normal), beyond(glm::dot(r, s.deep), 0.5 * s.depth),
-                                beyond(glm::dot(r, s.wide), 0.5 * s.length)));
-    };
-    const auto nearest = std::ranges::min_element(guide.made.slots, {}, away);
-    return fmt::format("near slot {} ({})", nearest->cut.letter, nearest->cut.name);
+    const cutting_guide::GuideCut& cut = guide.made.slots[cutting_guide::nearest_slot(guide.made.slots, p)].cut;
+    return fmt::format("near slot {} ({})", cut.letter, cut.name);
 }
 
 std::string place_of(const Vec3& p) {
