@@ -274,6 +274,13 @@ std::string place_of(const Vec3& p) {
     return fmt::format("{:.1f}, {:.1f}, {:.1f} mm", p.x / mm, p.y / mm, p.z / mm);
 }
 
+/// "touches vessel 'artery'". An overlap that would print as 0.00 mm is a touch.
+std::string meeting_of(const NearVessel& v) {
+    if (v.is_covered) return fmt::format("covers the place where the bone is left by {}", v.name);
+    if (v.away > -0.005 * mm) return fmt::format("touches {}", v.name);
+    return fmt::format("overlaps {} by {:.2f} mm", v.name, -v.away / mm);
+}
+
 void warn_clinically(PlannedGuide& guide, const GuideChoice& choice) {
     const auto warn = [&](const char* code, std::string text) { guide.warnings.push_back({code, std::move(text)}); };
     const cutting_guide::Seat& seat = guide.seat;
@@ -372,11 +379,9 @@ void refuse_guide(const PlannedGuide& guide) {
     for (const NearVessel& v : guide.vessels) {
         if (v.away >= mesh_slack && !v.is_covered) continue;
         throw Error(fmt::format(
-            "the guide {} {}, at {}: another approach (--turn), a narrower base (--wrap) or segments from another part "
-            "of the bone avoid it",
-            v.is_covered ? "covers the place where the bone is left by"
-                         : fmt::format("overlaps, by {:.2f} mm,", std::max(0.0, -v.away) / mm),
-            v.name, place_of(v.at)));
+            "the guide {}, at {}: another approach (--turn), a narrower base (--wrap) or segments from another part of "
+            "the bone avoid it",
+            meeting_of(v), place_of(v.at)));
     }
     for (const GuideHole& hole : guide.made.holes)
         for (const GuideCut& cut : guide.design.cuts)

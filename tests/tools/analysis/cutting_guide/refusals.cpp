@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Refusals of guides: their words and limits.
+#include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
+#include "tools/analysis/cutting_guide/plan_guide.hpp"
+
+#include <string>
+
+using namespace tactus;
+using namespace tactus::analysis;
+using Catch::Matchers::ContainsSubstring;
+
+namespace {
+
+/// Measures of a guide that passes each check.
+PlannedGuide flawless() {
+    PlannedGuide guide;
+    guide.topology.components = 1;
+    guide.volume = 1e-5;
+    guide.seat.min_distance = guide.design.settings.offset;
+    guide.seat.contact_area = 1e-4;
+    return guide;
+}
+
+std::string refusal(const PlannedGuide& guide) {
+    try {
+        refuse_guide(guide);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("a guide that touches a vessel is not said to overlap it by 0.00 mm") {
+    CHECK(refusal(flawless()) == "");
+    for (const double away : {0.04 * mm, 0.0, -0.004 * mm}) {
+        PlannedGuide guide = flawless();
+        guide.vessels.push_back({"vessel 'artery'", away});
+        CHECK_THAT(refusal(guide), ContainsSubstring("the guide touches vessel 'artery', at"));
+    }
+    PlannedGuide guide = flawless();
+    guide.vessels.push_back({"vessel 'artery'", -0.31 * mm});
+    CHECK_THAT(refusal(guide), ContainsSubstring("the guide overlaps vessel 'artery' by 0.31 mm, at"));
+}
