@@ -2,6 +2,7 @@
 #include "assets/mesh/mesh.hpp"
 
 #include "dsp/core/stop.hpp"
+#include "dsp/geometry/surface_volume.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -55,14 +56,7 @@ Mesh surface_of(const volume::Grid& distance) {
     return mesh;
 }
 
-double volume_of(const geometry::TriangleSurface& mesh) {
-    if (mesh.vertices.empty()) return 0.0;
-    const Vec3 base = mesh.vertices.front();  // near the mesh, to avoid cancellation
-    double six = 0.0;
-    for (const auto& t : mesh.triangles)
-        six += glm::dot(corner(mesh, t, 0) - base, glm::cross(corner(mesh, t, 1) - base, corner(mesh, t, 2) - base));
-    return six / 6.0;
-}
+double volume_of(const geometry::TriangleSurface& mesh) { return geometry::volume_of(mesh); }
 
 double area_of(const geometry::TriangleSurface& mesh) {
     double twice = 0.0;

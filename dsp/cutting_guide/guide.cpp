@@ -6,6 +6,7 @@
 #include "dsp/cutting_guide/guide_checks.hpp"
 #include "dsp/cutting_guide/guide_solid.hpp"
 #include "dsp/cutting_guide/thin_parts.hpp"
+#include "dsp/geometry/surface_volume.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -92,36 +93,48 @@ private:
     geometry::Contour contour_of(GuideSolid& solid) {
         const volume::Grid grid = layout();
         const std::vector<Body> texts = text_bodies();
-        const double least = set_.min_thickness(), wanted = least - wall_slack;
-        double smallest = crumb;
+        const double limit = set_.min_thickness() - wall_slack;
+        // Walls between letters are as thin as their strokes are near: they do not hold the guide together.
+        const double skin = rail_y_ - set_.rail + set_.text_depth + 0.05 * mm;
+        std::vector<bool> is_trimmed_at(slots_.size());
+        double whole = 0.0;
         for (int round = 0;; ++round) {
             const std::size_t plain = solid.cuts.size();
             solid.cuts.insert(solid.cuts.end(), texts.begin(), texts.end());
-            geometry::Contour contour = geometry::dual_contour(grid, solid, smallest, run_);
+            geometry::Contour contour = geometry::dual_contour(grid, solid, round == 0 ? crumb : loose, run_);
             solid.cuts.resize(plain);
             if (contour.surface.triangles.empty())
                 throw Error("nothing is left of the guide: it does not reach the bone");
+            const double volume = geometry::volume_of(contour.surface);
+            if (round == 0) whole = volume + contour.crumb_volume;
             const geometry::TriangleTree tree(contour.surface);
-            // Walls between letters are as thin as their strokes are near: they do not hold the guide together.
-            const double skin = rail_y_ - set_.rail + set_.text_depth + 0.05 * mm;
-            const std::vector<ThinWall> thin = thin_walls(
-                contour.surface, tree, wanted, [&](const Vec3& p) { return p.y > skin; }, run_);
-            if (thin.size() < wall_triangles || round == max_rounds) return contour;
-            if (round == 0) note_trimmed(thin);
-            solid.cuts.push_back(thin_parts(solid, tree, thin, least, std::max(set_.voxel, 0.4 * mm), run_));
-            smallest = loose;
+            const Walls walls = walls_of(contour.surface, tree, limit, [&](const Vec3& p) { return p.y > skin; }, run_);
+            if (!walls.is_thin() || round == max_rounds) {
+                made_.wall = walls.thinnest;
+                if (made_.wall) made_.wall->at = made_.frame.apply(made_.wall->at);
+                made_.thin_volume = std::max(0.0, whole - volume), made_.thin_share = made_.thin_volume / whole;
+                made_.loose_parts = contour.crumbs;
+                note_trimmed(is_trimmed_at, contour.crumb_volume);
+                return contour;
+            }
+            for (const ThinWall& wall : walls.thin)
+                is_trimmed_at[nearest_slot(made_.slots, made_.frame.apply(wall.at))] = true;
+            solid.cuts.push_back(thin_parts(solid, tree, walls, limit, run_));
         }
     }
 
-    void note_trimmed(const std::vector<ThinWall>& thin) {
+    void note_trimmed(const std::vector<bool>& is_trimmed_at, double loose_volume) {
         std::string letters;
         for (std::size_t n = 0; n < slots_.size(); ++n)
-            if (std::ranges::any_of(thin, [&](const ThinWall& w) {
-                    return nearest_slot(made_.slots, made_.frame.apply(w.at)) == n;
-                }))
-                letters += fmt::format("{}{}", letters.empty() ? "" : ", ", design_.cuts[n].letter);
-        made_.notes.push_back(fmt::format("parts thinner than {:.1f} mm near slot {} are left out",
-                                          set_.min_thickness() / mm, letters));
+            if (is_trimmed_at[n]) letters += fmt::format("{}{}", letters.empty() ? "" : ", ", design_.cuts[n].letter);
+        if (!letters.empty())
+            made_.notes.push_back(fmt::format("parts thinner than {:.1f} mm near slot {} are left out: {:.1f} % of the "
+                                              "guide's volume",
+                                              set_.min_thickness() / mm, letters, 100.0 * made_.thin_share));
+        if (made_.loose_parts > 0)
+            made_.notes.push_back(fmt::format("{} loose part{} of {:.0f} mm³ in all {} dropped", made_.loose_parts,
+                                              made_.loose_parts == 1 ? "" : "s", loose_volume * 1e9,
+                                              made_.loose_parts == 1 ? "is" : "are"));
     }
 
     /// A slot of which too little is left beside the kept one becomes a ledge.

@@ -113,12 +113,22 @@ struct MadeText {
     GuideText text;
 };
 
+/// A wall at one of its triangles.
+struct ThinWall {
+    double thickness = 0.0;  ///< m
+    Vec3 at{0.0};            ///< the middle of the wall
+};
+
 struct MadeGuide {
     geometry::TriangleSurface surface;  ///< m, in the frame of the bone
     Pose frame;  ///< of x along the slots and z along the removal
     std::vector<MadeSlot> slots;
     std::vector<GuideHole> holes;  ///< those that the guide surrounds
     std::vector<MadeText> texts;
+    std::optional<ThinWall> wall;  ///< the thinnest, see walls_of; text does not count; none: none below max_measured_wall
+    double thin_volume = 0.0;  ///< m³ left out as thinner than GuideSettings::min_thickness, with the loose parts
+    double thin_share = 0.0;  ///< of the volume of the guide before that
+    std::size_t loose_parts = 0;  ///< that came off, and were dropped; part of thin_volume
     std::vector<std::string> notes;  ///< what was left out or changed
     std::size_t flipped = 0, smoothed = 0;  ///< see geometry::Contour
 };
@@ -127,7 +137,9 @@ struct MadeGuide {
 /// round edges, since planes through its shell would leave feather edges on a flat bone. Each cut has a
 /// block with a slot whose wall on the kept side lies on the plane: a blade that is held against it cuts on plan, one at
 /// the other wall leaves bone. A rail beside the bone joins the blocks, and bears the text. All is united and
-/// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. Throws Error for
+/// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. What is thinner than
+/// min_thickness is left out, and stated in `thin_share`: strips between two slots, which have notes of their own, do not
+/// count there. Throws Error for
 /// planes through which no blade can come along the removal (more than 70° between them), for bone that stands in the
 /// way of the rail, for guides that need more than 150 million samples and numbers that cannot be.
 MadeGuide make_guide(const GuideDesign& design, const RunJobs& run);

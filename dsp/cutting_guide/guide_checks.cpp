@@ -45,72 +45,124 @@ void each_of(const geometry::TriangleSurface& surface, int job, const Each& each
     for (std::size_t t = first; t < last; ++t) each(facet(surface, t));
 }
 
-/// The largest ball that touches the facet at its middle, if it is below `most` wide and touches an opposite face.
-std::optional<ThinWall> wall_at(const geometry::TriangleTree& tree, const Facet& f, double most) {
-    double radius = 0.5 * most;
-    Vec3 centre = f.middle - radius * f.normal;
+/// The largest ball within the solid that touches a facet at its middle.
+struct Ball {
+    double radius = 0.0;  // m
+    bool is_bounded = false;  // by an opposite face: its diameter is the thickness of a wall
+};
+
+Vec3 middle_of(const Facet& f, double radius) { return f.middle - radius * f.normal; }
+
+Ball ball_at(const geometry::TriangleTree& tree, const Facet& f, double max_radius) {
+    double radius = max_radius;
     geometry::TriangleTree::Near near;
     for (int round = 0; round < 40; ++round) {
-        const auto closer = tree.nearest(centre, radius * (1.0 - 1e-6));
+        const auto closer = tree.nearest(middle_of(f, radius), radius * (1.0 - 1e-6));
         if (!std::isfinite(closer.distance)) break;
         near = closer;
         const Vec3 to = f.middle - near.point;
         const double along = glm::dot(to, f.normal);
         if (!(along > 1e-9)) return {};  // the triangle itself or one beside it
         radius = 0.5 * glm::dot(to, to) / along;
-        centre = f.middle - radius * f.normal;
     }
-    if (!std::isfinite(near.distance) || near.normal == Vec3(0.0)) return {};
-    if (glm::dot(near.normal, f.normal) > opposite) return {};
-    return ThinWall{2.0 * radius, centre};
+    const bool is_opposite = std::isfinite(near.distance) && near.normal != Vec3(0.0) &&
+                             !(glm::dot(near.normal, f.normal) > opposite);
+    return {radius, is_opposite};
+}
+
+/// Points in cubic cells as wide as the distance within which they are sought.
+class NearPoints {
+public:
+    NearPoints(std::vector<Vec3> points, double within) : within_(within), points_(std::move(points)) {
+        std::ranges::sort(points_, [&](const Vec3& a, const Vec3& b) { return cell(a) < cell(b); });
+    }
+    bool is_any_near(const Vec3& p) const {
+        const Cell middle = cell(p);
+        for (int i = -1; i <= 1; ++i)
+            for (int j = -1; j <= 1; ++j) {
+                // Cells along the last axis follow each other.
+                const Cell low{middle[0] + i, middle[1] + j, middle[2] - 1},
+                    high{middle[0] + i, middle[1] + j, middle[2] + 1};
+                auto at = std::ranges::lower_bound(points_, low, {}, [&](const Vec3& q) { return cell(q); });
+                for (; at != points_.end() && cell(*at) <= high; ++at)
+                    if (glm::dot(*at - p, *at - p) <= within_ * within_) return true;
+            }
+        return false;
+    }
+
+private:
+    using Cell = std::array<int, 3>;
+    Cell cell(const Vec3& p) const {
+        return {static_cast<int>(std::floor(p.x / within_)), static_cast<int>(std::floor(p.y / within_)),
+                static_cast<int>(std::floor(p.z / within_))};
+    }
+
+    double within_;
+    std::vector<Vec3> points_;
+};
+
+/// Keeps the `wall_triangles` thinnest.
+void keep_thinnest(std::vector<ThinWall>& walls, const ThinWall& wall) {
+    walls.insert(std::ranges::upper_bound(walls, wall.thickness, {}, &ThinWall::thickness), wall);
+    if (walls.size() > wall_triangles) walls.pop_back();
 }
 
 }  // namespace
 
-std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
-                                      double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run) {
-    // The thinnest places that `of_job` finds, in order, balls beginning at `widest`; empty: too few.
-    const auto thinnest = [&](int jobs, double widest, const auto& of_job) {
-        std::vector<std::vector<ThinWall>> found(static_cast<std::size_t>(jobs));
-        run(jobs, [&](int job) {
-            auto& thin = found[static_cast<std::size_t>(job)];
-            of_job(job, [&](const Facet& f) {
-                if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
-                const auto wall = wall_at(tree, f, thin.size() < wall_triangles ? widest : thin.back().thickness);
-                if (!wall) return;
-                thin.insert(std::ranges::upper_bound(thin, wall->thickness, {}, &ThinWall::thickness), *wall);
-                if (thin.size() > wall_triangles) thin.pop_back();
-            });
-        });
-        std::vector<ThinWall> all;
-        for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
-        if (all.size() < wall_triangles) return std::optional<ThinWall>{};
-        std::ranges::nth_element(all, all.begin() + (wall_triangles - 1), {}, &ThinWall::thickness);
-        return std::optional(all[wall_triangles - 1]);
+Walls walls_of(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree, double limit,
+               const std::function<bool(const Vec3&)>& counts, const RunJobs& run) {
+    struct Part {
+        std::vector<ThinWall> thin, thicker;  // thicker: the thinnest of those that are not thin
+        std::vector<Vec3> thin_at, balls;  // middles of the facets of `thin`; see Walls
     };
-    // A sample bounds the result, so that the balls of the other facets begin small.
-    const auto sampled = thinnest((jobs_of(surface) + sample - 1) / sample, most, [&](int job, const auto& each) {
-        const std::size_t all = surface.triangles.size();
-        const auto end = std::min(all, (static_cast<std::size_t>(job) + 1) * chunk * sample);
-        for (std::size_t t = static_cast<std::size_t>(job) * chunk * sample; t < end; t += sample)
-            each(facet(surface, t));
+    // Balls begin at `widest`, or at the thinnest walls that their job has found.
+    const auto measure = [&](Part& part, const Facet& f, double widest) {
+        if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
+        if (part.thicker.size() == wall_triangles) widest = part.thicker.back().thickness;
+        const Ball ball = ball_at(tree, f, 0.5 * widest);
+        const ThinWall wall{2.0 * ball.radius, middle_of(f, ball.radius)};
+        if (wall.thickness >= limit) {
+            part.balls.push_back(middle_of(f, 0.5 * limit));
+            if (ball.is_bounded) keep_thinnest(part.thicker, wall);
+        } else if (ball.is_bounded) {
+            part.thin.push_back(wall), part.thin_at.push_back(f.middle);
+        }
+    };
+    const auto run_parts = [&](int jobs, const auto& of_job) {
+        std::vector<Part> parts(static_cast<std::size_t>(jobs));
+        run(jobs, [&](int job) { of_job(job, parts[static_cast<std::size_t>(job)]); });
+        return parts;
+    };
+    const auto thicker_of = [](const std::vector<Part>& parts) {
+        std::vector<ThinWall> all;
+        for (const Part& part : parts)
+            for (const ThinWall& wall : part.thicker) keep_thinnest(all, wall);
+        return all;
+    };
+    const double most = std::max(limit, max_measured_wall);
+    const std::vector<ThinWall> sampled =
+        thicker_of(run_parts((jobs_of(surface) + sample - 1) / sample, [&](int job, Part& part) {
+            const auto end = std::min(surface.triangles.size(), (static_cast<std::size_t>(job) + 1) * chunk * sample);
+            for (std::size_t t = static_cast<std::size_t>(job) * chunk * sample; t < end; t += sample)
+                measure(part, facet(surface, t), most);
+        }));
+    const double widest = sampled.size() < wall_triangles ? most : sampled.back().thickness;
+    const std::vector<Part> parts = run_parts(jobs_of(surface), [&](int job, Part& part) {
+        each_of(surface, job, [&](const Facet& f) { measure(part, f, widest); });
     });
-    const double widest = sampled ? std::min(most, 1.001 * sampled->thickness) : most;
-    return thinnest(jobs_of(surface), widest, [&](int job, const auto& each) { each_of(surface, job, each); });
-}
-
-std::vector<ThinWall> thin_walls(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
-                                 double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run) {
-    std::vector<std::vector<ThinWall>> found(static_cast<std::size_t>(jobs_of(surface)));
-    run(jobs_of(surface), [&](int job) {
-        each_of(surface, job, [&](const Facet& f) {
-            if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
-            if (const auto wall = wall_at(tree, f, most)) found[static_cast<std::size_t>(job)].push_back(*wall);
-        });
-    });
-    std::vector<ThinWall> all;
-    for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
-    return all;
+    Walls walls;
+    std::vector<ThinWall> thinnest = thicker_of(parts);
+    if (std::ranges::any_of(parts, [](const Part& part) { return !part.thin.empty(); })) {
+        for (const Part& part : parts) walls.balls.insert(walls.balls.end(), part.balls.begin(), part.balls.end());
+        const NearPoints near(walls.balls, 0.5 * limit + wall_slack);
+        for (const Part& part : parts)
+            for (std::size_t n = 0; n < part.thin.size(); ++n)
+                if (!near.is_any_near(part.thin_at[n])) walls.thin.push_back(part.thin[n]);
+        if (walls.thin.empty()) walls.balls.clear();
+        for (const ThinWall& wall : walls.thin) keep_thinnest(thinnest, wall);
+    }
+    if (thinnest.size() == wall_triangles) walls.thinnest = thinnest.back();
+    return walls;
 }
 
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,

@@ -7,31 +7,38 @@
 #include "dsp/geometry/iso_surface.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <vector>
 
 namespace tactus::cutting_guide {
 
-/// The thinnest wall of a closed surface, or none thinner than `most`.
-struct ThinWall {
-    double thickness = 0.0;  ///< m
-    Vec3 at{0.0};            ///< the middle of the wall
-};
-
+/// Thicker walls are not measured, m.
+inline constexpr double max_measured_wall = 6e-3;
 /// A wall is measured by this many triangles at least: single ones are folds of the mesh at its corners.
 inline constexpr std::size_t wall_triangles = 6;
 
-/// Twice the radius of the smallest ball within the solid that touches it at two places whose normals differ by at least
-/// 150°: a ball at a corner touches faces that differ less. The balls shrink from `most` / 2 at the middle of each
-/// triangle for which `counts` is true (Ma, Bae, Choi 2012). `wall_triangles`
-/// must be so thin. `tree` is of `surface`.
-std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
-                                      double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run);
+/// Walls of a closed surface.
+struct Walls {
+    std::optional<ThinWall> thinnest;  ///< none: no wall is thinner than max_measured_wall
+    std::vector<ThinWall> thin;  ///< one per triangle whose wall is thinner than `limit`, in the order of the triangles
+    std::vector<Vec3> balls;  ///< middles of balls as wide as `limit` within the solid; empty without thin walls
 
-/// All of these balls that are below `most` wide, in the order of the triangles.
-std::vector<ThinWall> thin_walls(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
-                                 double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run);
+    bool is_thin() const { return thin.size() >= wall_triangles; }
+};
+
+/// The thickness of a wall at a triangle is twice the radius of the smallest ball within the solid that touches the
+/// middle of the triangle and another place whose normal differs by at least 150°: a ball at a corner touches faces that
+/// differ less. The balls shrink from a bound (Ma, Bae, Choi 2012): first at every 32nd triangle from
+/// max_measured_wall, then at all of them from the thinnest wall of these, at least `limit`. A single pass so gives the
+/// thinnest wall and all thin ones, while most balls need one query.
+///
+/// Where a wall ends with a round edge, balls become smaller towards the edge until the faces differ by 150°. This is no
+/// thin wall: a triangle that stands out by at most wall_slack from the balls as wide as `limit` does not count.
+/// Triangles for which `counts` is false are not measured. `tree` is of `surface`. m.
+Walls walls_of(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree, double limit,
+               const std::function<bool(const Vec3&)>& counts, const RunJobs& run);
 
 /// How a guide lies on its bone.
 struct Seat {

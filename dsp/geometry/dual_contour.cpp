@@ -104,7 +104,7 @@ public:
             const std::size_t size = flood(first, step, is_seen, part);
             if (size > most) continue;
             for (const std::size_t s : part) grid_.values[s] = -grid_.values[s] + tiny;
-            ++made.crumbs;
+            ++made.crumbs, made.crumb_volume += static_cast<double>(size) * cell;
         }
         std::ranges::fill(is_seen, std::uint8_t{0});
         // The border is outside, and all of it is connected.

@@ -24,6 +24,7 @@ public:
 struct Contour {
     TriangleSurface surface;
     std::size_t crumbs = 0, voids = 0;  ///< separate parts below `crumb`, and enclosed cavities, that were removed
+    double crumb_volume = 0.0;  ///< m³, of these parts, by their samples
     std::size_t flipped = 0;  ///< samples whose side was changed so that no edge has four triangles
     std::size_t smoothed = 0;  ///< vertices that gave up their edge so that no triangles intersect
 };

@@ -95,15 +95,53 @@ TEST_CASE("a guide with close cuts has no part too thin to print", "[slow]") {
     const MadeGuide made = make_guide(design, run_in_turn);
     CHECK(test::flaws_of(made.surface) == "none");
     CHECK(test::parts_of(made.surface) == 1);
-    const geometry::TriangleTree tree(made.surface);
-    const auto wall = thinnest_wall(made.surface, tree, 6.0 * mm, [](const Vec3&) { return true; }, run_in_turn);
-    CHECK((!wall || wall->thickness > design.settings.min_thickness() - wall_slack));
+    CHECK((!made.wall || made.wall->thickness > design.settings.min_thickness() - wall_slack));
     for (const MadeSlot& slot : made.slots) {
         const SlotFit fit = refit_slot(made.surface, slot);
         INFO("slot " << slot.cut.letter);
         CHECK(std::abs(fit.offset) < 0.05 * mm);
         CHECK(fit.angle < 0.1 * degree);
     }
+}
+
+// Costly: two guides are meshed, and measured.
+TEST_CASE("a base that is as thick as the least wall keeps all of its contact", "[slow]") {
+    GuideDesign design = test::random_guide(3, 1);
+    design.settings.voxel = 0.6 * mm, design.settings.thickness = 2.0 * mm, design.settings.min_wall = 2.0 * mm;
+    const geometry::TriangleTree bone(design.bone);
+    const auto contact_of = [&](const MadeGuide& made) {
+        return seat_of(made.surface, bone, glm::normalize(design.removal), design.settings.offset, 0.3 * mm,
+                       run_in_turn)
+            .contact_area;
+    };
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::flaws_of(made.surface) == "none");
+    CHECK(test::parts_of(made.surface) == 1);
+    CHECK(made.thin_share < 0.005);
+    REQUIRE(made.wall);
+    CHECK(made.wall->thickness > 1.9 * mm);
+    // Of this one nothing is too thin; the blocks reach as far beyond the bone.
+    design.settings.min_wall = 1.0 * mm, design.settings.beyond = design.settings.offset + 2.2 * mm;
+    CHECK(contact_of(made) > 0.99 * contact_of(make_guide(design, run_in_turn)));
+}
+
+// Costly: a guide with close cuts is meshed several times.
+TEST_CASE("a guide states which share of its volume is left out as too thin", "[slow]") {
+    GuideDesign design = test::random_guide(100, 2);
+    design.settings.sides = Sides::one, design.settings.beyond = 4.0 * mm;
+    design.cuts[2].plane.origin = design.cuts[1].plane.origin + 4.0 * mm * design.along;
+    const MadeGuide made = make_guide(design, run_in_turn);
+    REQUIRE(made.thin_share > 0.0);
+    const double volume = test::volume_of(made.surface);
+    CHECK(made.thin_share == Approx(made.thin_volume / (volume + made.thin_volume)));
+    CHECK(std::ranges::any_of(made.notes, [](const std::string& note) {
+        return note.find("are left out:") != std::string::npos && note.find("% of the guide's volume") != std::string::npos;
+    }));
+    // Of this one nothing is too thin.
+    design.settings.min_wall = 0.2 * mm;
+    const MadeGuide whole = make_guide(design, run_in_turn);
+    CHECK(whole.thin_volume == 0.0);
+    CHECK(test::volume_of(whole.surface) == Approx(volume + made.thin_volume).epsilon(1e-3));
 }
 
 // Costly: a guide with close cuts is meshed several times.
@@ -203,9 +241,19 @@ TEST_CASE("the thinnest wall of a wedge is that of its thin end") {
         REQUIRE(test::flaws_of(wedge) == "none");
         REQUIRE(test::volume_of(wedge) > 0.0);
         const geometry::TriangleTree tree(wedge);
-        const auto wall = thinnest_wall(wedge, tree, 8.0 * mm, [](const Vec3&) { return true; }, run_in_turn);
-        REQUIRE(wall);
-        CHECK(wall->thickness == Approx(thin).margin(0.1 * mm));
+        const auto counts = [](const Vec3&) { return true; };
+        const Walls walls = walls_of(wedge, tree, 0.3 * mm, counts, run_in_turn);
+        REQUIRE(walls.thinnest);
+        CHECK(walls.thinnest->thickness == Approx(thin).margin(0.1 * mm));
+        CHECK(walls.thin.empty());
+        // The same wall is found whatever the limit is, and all that is thinner.
+        const Walls thinner = walls_of(wedge, tree, thin + 0.4 * mm, counts, run_in_turn);
+        REQUIRE(thinner.thinnest);
+        CHECK(thinner.thinnest->thickness == Approx(walls.thinnest->thickness).margin(0.01 * mm));
+        REQUIRE(thinner.is_thin());
+        double thickest = 0.0;
+        for (const ThinWall& wall : thinner.thin) thickest = std::max(thickest, wall.thickness);
+        CHECK(thickest == Approx(thin + 0.4 * mm).margin(0.1 * mm));
     }
 }
 
@@ -273,9 +321,7 @@ TEST_CASE("a base on a flat bone ends with round edges") {
     const MadeGuide made = make_guide(design, run_in_turn);
     CHECK(test::flaws_of(made.surface) == "none");
     CHECK(test::parts_of(made.surface) == 1);
-    const geometry::TriangleTree tree(made.surface);
-    const auto wall = thinnest_wall(made.surface, tree, 6.0 * mm, [](const Vec3&) { return true; }, run_in_turn);
-    CHECK((!wall || wall->thickness > 1.9 * mm));
+    CHECK((!made.wall || made.wall->thickness > 1.9 * mm));
     REQUIRE(made.holes.size() == 1);
     CHECK(made.holes[0].at.x > -17.0 * mm);
     CHECK(made.holes[0].at.x < -7.9 * mm);

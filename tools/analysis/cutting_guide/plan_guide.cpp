@@ -358,14 +358,20 @@ void refuse_guide(const PlannedGuide& guide) {
         throw Error(fmt::format("the guide's mesh intersects itself in {} places", guide.intersections));
     const cutting_guide::GuideSettings& set = guide.design.settings;
     const double wanted = set.min_thickness() - cutting_guide::wall_slack;
-    if (guide.wall && guide.wall->thickness < wanted) {
+    if (guide.made.wall && guide.made.wall->thickness < wanted) {
         throw Error(fmt::format(
             "a wall {} is {:.2f} mm thick, less than {:.1f} mm (the thinnest part to print, {:.1f} mm, a placeholder, "
             "less {:.1f} mm), at {}: more space between the segments ('between_space_mm' of the inputs), a narrower slot "
             "(--blade, --clearance), three sides (--sides 3) or another approach (--turn) may leave more of it",
-            near_slot(guide, guide.wall->at), guide.wall->thickness / mm, wanted / mm, set.min_thickness() / mm,
-            cutting_guide::wall_slack / mm, place_of(guide.wall->at)));
+            near_slot(guide, guide.made.wall->at), guide.made.wall->thickness / mm, wanted / mm, set.min_thickness() / mm,
+            cutting_guide::wall_slack / mm, place_of(guide.made.wall->at)));
     }
+    if (guide.made.thin_share > guide.limits.max_thin_share)
+        throw Error(fmt::format(
+            "{:.1f} % of the guide's volume are left out as thinner than {:.1f} mm, more than {:.0f} % (a placeholder): a "
+            "thicker base (--thickness), thicker walls of the slots (--wall), more space between the segments "
+            "('between_space_mm' of the inputs) or a lower least wall (--min-wall) keep more of it",
+            100.0 * guide.made.thin_share, set.min_thickness() / mm, 100.0 * guide.limits.max_thin_share));
     if (!guide.seat.is_path_free) {
         throw Error(fmt::format("bone is in the way of the guide along its approach {}, at {}: turn it (--turn)",
                                 near_slot(guide, guide.seat.blocked_at), place_of(guide.seat.blocked_at)));
@@ -415,19 +421,13 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
     guide.bone = choice.bone;
     guide.kerf = study.inputs().kerf;
     guide.design = design_guide(study, title, choice);
+    guide.limits = choice.limits;
     guide.made = cutting_guide::make_guide(guide.design, run);
     const geometry::TriangleSurface& surface = guide.made.surface;
     const geometry::TriangleTree tree(surface), bone(guide.design.bone);
     guide.topology = mesh::topology_of(surface);
     guide.intersections = geometry::self_intersections(surface, 100, run).size();
     guide.volume = mesh::volume_of(surface);
-    // Walls between letters are as thin as their strokes are near: they are not what holds the guide together.
-    const Pose to_guide = guide.made.frame.inverse();
-    double face = infinity;
-    for (const Vec3& v : surface.vertices) face = std::min(face, to_guide.apply(v).y);
-    const double skin = face + guide.design.settings.text_depth + 0.05 * mm;
-    guide.wall = cutting_guide::thinnest_wall(
-        surface, tree, 6.0 * mm, [&](const Vec3& p) { return to_guide.apply(p).y > skin; }, run);
     guide.seat = cutting_guide::seat_of(surface, bone, glm::normalize(guide.design.removal),
                                         guide.design.settings.offset, choice.seat_gap, run);
     guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.overhang);

@@ -16,6 +16,11 @@ namespace tactus::analysis {
 enum class GuideBone { fibula, jaw };
 const char* name_of(GuideBone bone);  ///< "fibula", "jaw"
 
+/// Thresholds of refusals and warnings.
+struct GuideLimits {
+    double max_thin_share = 0.05;  ///< of the volume, that is left out as too thin: a placeholder
+};
+
 struct GuideChoice {
     GuideBone bone = GuideBone::fibula;
     int cut = 0;  ///< of the jaw: 1 the first, 2 the last; 0: all
@@ -29,6 +34,7 @@ struct GuideChoice {
     double perforator = 3.0e-3;  ///< m: nearer perforators warn; a placeholder
     double perforator_radius = 0.3e-3;  ///< m (Heitmann 2003)
     double vessel = 3.0e-3;  ///< m; a placeholder
+    GuideLimits limits;
 };
 
 struct GuideWarning {
@@ -48,11 +54,11 @@ struct NearVessel {
 struct PlannedGuide {
     GuideBone bone = GuideBone::fibula;
     cutting_guide::GuideDesign design;
+    GuideLimits limits;
     cutting_guide::MadeGuide made;
     mesh::MeshTopology topology;
     std::size_t intersections = 0;  ///< pairs of triangles of the mesh, at most 100
     double volume = 0.0;  ///< m³
-    std::optional<cutting_guide::ThinWall> wall;  ///< none: no wall is thinner than 6 mm
     cutting_guide::Seat seat;
     double overhang = 0.0;  ///< share of the area
     std::vector<cutting_guide::SlotFit> refits;  ///< of each slot, from the mesh
@@ -68,7 +74,7 @@ cutting_guide::GuideDesign design_guide(const FlapStudy& study, const std::strin
 PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
 
 /// Throws Error for a mesh that is not closed, wound or one part, that intersects itself, has a wall thinner than it
-/// should, a slot off the plan, or cannot be seated, and for one that overlaps a vessel, a perforator or a cut with a hole:
+/// should or has lost too much that was too thin, a slot off the plan, or cannot be seated, and for one that overlaps a vessel, a perforator or a cut with a hole:
 /// such a guide must not be printed. The text names the slot, the value, the limit with its source, and what helps.
 void refuse_guide(const PlannedGuide& guide);
 

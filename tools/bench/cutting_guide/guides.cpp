@@ -150,7 +150,7 @@ void count_one(std::uint64_t number, const NamedBone& jaw, bool for_jaw, const G
             return;
         }
         ++tally.made;
-        if (guide.wall) tally.thinnest = std::min(tally.thinnest, guide.wall->thickness);
+        if (guide.made.wall) tally.thinnest = std::min(tally.thinnest, guide.made.wall->thickness);
         tally.nearest = std::min(tally.nearest, guide.seat.min_distance - guide.design.settings.offset);
     } catch (const Error& error) {
         refused(tally.cannot, error);

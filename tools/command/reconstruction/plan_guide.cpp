@@ -26,7 +26,7 @@ struct GuideOptions : PlanChoice {
     std::string bone = "fibula", printer = "sla", label;
     int cut = 0, sides = 3;
     std::optional<double> blade, clearance, offset;
-    double thickness = 4.0, wrap = 120.0, depth = 15.0, wall = 3.0, screw = 3.0, turn = 0.0, voxel = 0.35;
+    double thickness = 4.0, wrap = 120.0, depth = 15.0, wall = 3.0, screw = 3.0, turn = 0.0, voxel = 0.35, min_wall = 2.0;
 };
 
 analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy& study) {
@@ -43,6 +43,7 @@ analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy
     set.clearance = o.clearance ? *o.clearance * mm : (o.printer == "fdm" ? 0.4 : 0.25) * mm;
     set.thickness = o.thickness * mm, set.wrap = o.wrap * degree, set.depth = o.depth * mm, set.wall = o.wall * mm;
     set.screw_radius = 0.5 * o.screw * mm, set.voxel = o.voxel * mm;
+    set.min_wall = o.min_wall * mm;
     set.sides = static_cast<cutting_guide::Sides>(o.sides);
     return choice;
 }
@@ -107,6 +108,9 @@ Action declare_plan_guide(VerbOptions& verb) {
         .shows_default();
     verb.add("--depth", o->depth, "mm of a slot above the bone").range(3.0, 40.0).shows_default();
     verb.add("--wall", o->wall, "mm of a slot's walls").range(1.0, 10.0).shows_default();
+    verb.add("--min-wall", o->min_wall, "mm: what is thinner is left out, as it may break when printed")
+        .range(0.5, 5.0)
+        .shows_default();
     verb.add("--screw", o->screw, "mm, diameter of the holes that fix the guide").range(0.5, 6.0).shows_default();
     verb.add("--turn", o->turn,
              "degrees by which the approach is turned: of a fibula from lateral to the front, of a jaw about its cuts")

@@ -206,8 +206,12 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
             .integer("triangles", "triangles", [](const G& g) { return g.made.surface.triangles.size(); })
             .number("volume_mm3", "volume", from_si(0, "mm³"), &G::volume)
             .number("wall_min_mm", "thinnest wall", from_si(2, "mm"),
-                    [](const G& g) { return g.wall ? std::optional(g.wall->thickness) : std::nullopt; })
-            .text("", "thinnest wall", [](const G& g) { return std::string(g.wall ? "" : "above 6 mm"); })
+                    [](const G& g) { return g.made.wall ? std::optional(g.made.wall->thickness) : std::nullopt; })
+            .text("", "thinnest wall", [](const G& g) { return std::string(g.made.wall ? "" : "above 6 mm"); })
+            .number("thin_share", "volume left out as too thin", fixed(1, "%", "1"),
+                    [](const G& g) { return g.made.thin_share; })
+            .number("thin_volume_mm3", "", from_si(1, "mm³"), [](const G& g) { return g.made.thin_volume; })
+            .integer("loose_parts", "loose parts dropped", [](const G& g) { return g.made.loose_parts; })
             .child("seating", "", seating_fields(), [](const G& g) -> const G& { return g; })
             .rows("slots", "slots", slot_fields(), slots_of)
             .rows("holes", "holes", hole_fields(), [](const G& g) -> const auto& { return g.made.holes; })

@@ -45,3 +45,15 @@ TEST_CASE("a guide that touches a vessel is not said to overlap it by 0.00 mm") 
     guide.vessels.push_back({"vessel 'artery'", -0.31 * mm});
     CHECK_THAT(refusal(guide), ContainsSubstring("the guide overlaps vessel 'artery' by 0.31 mm, at"));
 }
+
+TEST_CASE("a guide that lost more than a twentieth as too thin is refused with what to change") {
+    PlannedGuide guide = flawless();
+    guide.made.thin_share = 0.049;
+    CHECK(refusal(guide) == "");
+    guide.made.thin_share = 0.062;
+    CHECK_THAT(refusal(guide), ContainsSubstring("6.2 % of the guide's volume are left out as thinner than 2.0 mm"));
+    CHECK_THAT(refusal(guide), ContainsSubstring("--thickness"));
+    CHECK_THAT(refusal(guide), ContainsSubstring("--min-wall"));
+    guide.limits.max_thin_share = 0.08;
+    CHECK(refusal(guide) == "");
+}
