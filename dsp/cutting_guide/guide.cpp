@@ -29,7 +29,8 @@ constexpr double ledge = 3e-3;  // m: what is free in front of a ledge
 constexpr double crumb = 8e-9;  // m³: smaller parts fall off and are removed
 constexpr double loose = 500e-9;  // m³: smaller parts may come off when thin ones are left out
 constexpr double max_samples = 150e6;
-constexpr int max_rounds = 3;  // of leaving out what is thin
+constexpr std::size_t max_rounds = 3;  // of leaving out what is thin
+constexpr int slide_steps = 8;  // of a hole
 
 /// A cut in the frame of the guide.
 struct Slot {
@@ -45,6 +46,14 @@ struct Slot {
     double x_at(double y, double z) const {
         return origin.x - (normal.y * (y - origin.y) + normal.z * (z - origin.z)) / normal.x;
     }
+};
+
+/// A hole at one of the places along its slide, in steps.
+struct PlacedHole {
+    const GuideHole* hole;
+    int step;
+    MadeHole made;
+    Body body;
 };
 
 void check(const GuideSettings& s) {
@@ -80,7 +89,7 @@ public:
         GuideSolid solid(bone);
         add_parts(solid);
         add_cuts(solid, bone);
-        geometry::Contour contour = contour_of(solid);
+        geometry::Contour contour = contour_of(solid, bone);
         keep_walls(contour.surface);
         made_.flipped = contour.flipped, made_.smoothed = contour.smoothed;
         for (Vec3& v : contour.surface.vertices) v = made_.frame.apply(v);
@@ -90,36 +99,42 @@ public:
 
 private:
     /// Without what is thinner than it may be.
-    geometry::Contour contour_of(GuideSolid& solid) {
+    geometry::Contour contour_of(GuideSolid& solid, const SeatedBone& bone) {
         const volume::Grid grid = layout();
         const std::vector<Body> texts = text_bodies();
         const double limit = set_.min_thickness() - wall_slack;
         // Walls between letters are as thin as their strokes are near: they do not hold the guide together.
         const double skin = rail_y_ - set_.rail + set_.text_depth + 0.05 * mm;
         std::vector<bool> is_trimmed_at(slots_.size());
-        double whole = 0.0;
-        for (int round = 0;; ++round) {
+        double volume_before = 0.0;  // 0: nothing was left out since
+        for (;;) {
             const std::size_t plain = solid.cuts.size();
             solid.cuts.insert(solid.cuts.end(), texts.begin(), texts.end());
-            geometry::Contour contour = geometry::dual_contour(grid, solid, round == 0 ? crumb : loose, run_);
+            geometry::Contour contour = geometry::dual_contour(grid, solid, thin_cuts_.empty() ? crumb : loose, run_);
             solid.cuts.resize(plain);
             if (contour.surface.triangles.empty())
                 throw Error("nothing is left of the guide: it does not reach the bone");
             const double volume = geometry::volume_of(contour.surface);
-            if (round == 0) whole = volume + contour.crumb_volume;
+            if (volume_before > 0.0) made_.thin_volume += std::max(0.0, volume_before - volume);
+            volume_before = 0.0;
             const geometry::TriangleTree tree(contour.surface);
             const Walls walls = walls_of(contour.surface, tree, limit, [&](const Vec3& p) { return p.y > skin; }, run_);
-            if (!walls.is_thin() || round == max_rounds) {
-                made_.wall = walls.thinnest;
-                if (made_.wall) made_.wall->at = made_.frame.apply(made_.wall->at);
-                made_.thin_volume = std::max(0.0, whole - volume), made_.thin_share = made_.thin_volume / whole;
-                made_.loose_parts = contour.crumbs;
-                note_trimmed(is_trimmed_at, contour.crumb_volume);
-                return contour;
+            if (walls.is_thin() && thin_cuts_.size() < max_rounds) {
+                for (const ThinWall& wall : walls.thin)
+                    is_trimmed_at[nearest_slot(made_.slots, made_.frame.apply(wall.at))] = true;
+                volume_before = volume + (thin_cuts_.empty() ? contour.crumb_volume : 0.0);
+                thin_cuts_.push_back(thin_parts(solid, tree, walls, limit, run_));
+                subtract(solid);
+                continue;
             }
-            for (const ThinWall& wall : walls.thin)
-                is_trimmed_at[nearest_slot(made_.slots, made_.frame.apply(wall.at))] = true;
-            solid.cuts.push_back(thin_parts(solid, tree, walls, limit, run_));
+            if (!check_holes(solid, bone, tree, limit)) continue;
+            for (PlacedHole& hole : holes_) made_.holes.push_back(std::move(hole.made));
+            made_.wall = walls.thinnest;
+            if (made_.wall) made_.wall->at = made_.frame.apply(made_.wall->at);
+            made_.thin_share = made_.thin_volume / (volume + made_.thin_volume);
+            made_.loose_parts = contour.crumbs;
+            note_trimmed(is_trimmed_at, contour.crumb_volume);
+            return contour;
         }
     }
 
@@ -425,7 +440,9 @@ private:
             }
             note_slot(n);
         }
-        for (const GuideHole& hole : design_.holes) add_hole(solid, bone, hole);
+        slot_cuts_ = solid.cuts;
+        for (const GuideHole& hole : design_.holes)
+            place_hole(solid, bone, hole, 0, "the guide does not surround it");
     }
 
     /// Negative where the plane of `a`, moved out by `out`, has passed that of `b`, at any x. With the width of its slot:
@@ -517,23 +534,52 @@ private:
         return middle;
     }
 
-    /// Only where the guide surrounds it.
-    void add_hole(GuideSolid& solid, const SeatedBone& bone, const GuideHole& hole) {
+    /// Makes a hole at the first place of its slide, from `step` on, where the guide surrounds it; without one it is left out.
+    void place_hole(GuideSolid& solid, const SeatedBone& bone, const GuideHole& hole, int step, const char* reason) {
         const Vec3 axis = to_guide_.rotate(hole.axis);
-        constexpr int steps = 8;
-        const int last = hole.slide == Vec3(0.0) ? 0 : steps;
-        for (int n = 0; n <= last; ++n) {
-            GuideHole moved = hole;
-            moved.at += static_cast<double>(n) / steps * hole.slide;
+        const int last = hole.slide == Vec3(0.0) ? 0 : slide_steps;
+        for (; step <= last; ++step) {
+            MadeHole moved{hole};
+            moved.at += static_cast<double>(step) / slide_steps * hole.slide;
             const auto middle = surrounded(solid, bone, to_guide_.apply(moved.at), axis, hole.radius);
             if (!middle) continue;
-            solid.cuts.push_back({plane(axis, *middle + 15.0 * mm * axis),
-                                  plane(-axis, *middle - 25.0 * mm * axis),
-                                  {Term::Kind::cylinder, axis, *middle, hole.radius}});
-            made_.holes.push_back(std::move(moved));
+            moved.middle = made_.frame.apply(*middle);
+            holes_.push_back({&hole,
+                              step,
+                              std::move(moved),
+                              {plane(axis, *middle + 15.0 * mm * axis),
+                               plane(-axis, *middle - 25.0 * mm * axis),
+                               {Term::Kind::cylinder, axis, *middle, hole.radius}}});
+            subtract(solid);
             return;
         }
-        made_.notes.push_back(fmt::format("{}: the guide does not surround it, and has no hole for it", hole.name));
+        made_.notes.push_back(fmt::format("{}: {}, and has no hole for it", hole.name, reason));
+    }
+
+    /// Measures the walls around the holes in the mesh, of which `tree` is. A hole whose wall is too thin, because what was
+    /// beside it is left out, moves on along its slide or is left out. Returns false if there was one: the mesh is then
+    /// out of date.
+    bool check_holes(GuideSolid& solid, const SeatedBone& bone, const geometry::TriangleTree& tree, double limit) {
+        std::vector<PlacedHole> failed;
+        for (PlacedHole& hole : holes_) {
+            MadeHole local = hole.made;
+            local.axis = to_guide_.rotate(local.axis), local.middle = to_guide_.apply(local.middle);
+            hole.made.wall = hole_wall(tree, local);
+            if (hole.made.wall < limit) failed.push_back(hole);
+        }
+        if (failed.empty()) return true;
+        std::erase_if(holes_, [&](const PlacedHole& hole) { return hole.made.wall < limit; });
+        subtract(solid);
+        for (const PlacedHole& hole : failed)
+            place_hole(solid, bone, *hole.hole, hole.step + 1, "the guide around it would be too thin");
+        return false;
+    }
+
+    /// Collects the bodies that are subtracted.
+    void subtract(GuideSolid& solid) const {
+        solid.cuts = slot_cuts_;
+        for (const PlacedHole& hole : holes_) solid.cuts.push_back(hole.body);
+        solid.cuts.insert(solid.cuts.end(), thin_cuts_.begin(), thin_cuts_.end());
     }
 
     std::vector<Body> text_bodies() {
@@ -562,6 +608,8 @@ private:
     Pose to_guide_;
     geometry::TriangleSurface bone_;  // in the frame of the guide, as all below
     std::vector<Slot> slots_;
+    std::vector<Body> slot_cuts_, thin_cuts_;
+    std::vector<PlacedHole> holes_;
     std::vector<std::shared_ptr<const Patch>> patches_;  // of each base
     double rail_y_ = 0.0, rail_low_ = 0.0, rail_from_ = 0.0, rail_to_ = 0.0, top_ = 0.0;
     Vec3 low_{0.0}, high_{0.0};

@@ -75,6 +75,11 @@ struct GuideHole {
     Vec3 slide{0.0};  ///< m: by up to so much it may move until the guide surrounds it
 };
 
+struct MadeHole : GuideHole {
+    Vec3 middle{0.0};   ///< m: on its axis, in the middle of the base
+    double wall = 0.0;  ///< m: the thinnest around it at half the thickness of the base, from the mesh (see hole_wall)
+};
+
 /// A closed polygon of a glyph, m; filled by the non-zero rule.
 using Outline = std::vector<glm::dvec2>;
 
@@ -123,7 +128,7 @@ struct MadeGuide {
     geometry::TriangleSurface surface;  ///< m, in the frame of the bone
     Pose frame;  ///< of x along the slots and z along the removal
     std::vector<MadeSlot> slots;
-    std::vector<GuideHole> holes;  ///< those that the guide surrounds
+    std::vector<MadeHole> holes;  ///< those that the guide surrounds by a wall that is not too thin
     std::vector<MadeText> texts;
     std::optional<ThinWall> wall;  ///< the thinnest, see walls_of; text does not count; none: none below max_measured_wall
     double thin_volume = 0.0;  ///< m³ left out as thinner than GuideSettings::min_thickness, with the loose parts

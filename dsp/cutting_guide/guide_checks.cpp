@@ -286,6 +286,26 @@ SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slo
     return found;
 }
 
+double hole_wall(const geometry::TriangleTree& tree, const MadeHole& hole) {
+    constexpr int directions = 24;
+    // m: of the mesh from the cylinder, from its wall into the solid, and the radius of a ball that replaces a line.
+    constexpr double slack = 0.1 * mm, step = 0.01 * mm, line = 1e-6 * mm;
+    const Vec3 u = glm::normalize(
+                   glm::cross(hole.axis, std::abs(hole.axis.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0))),
+               v = glm::cross(hole.axis, u);
+    double least = max_measured_wall;
+    for (int k = 0; k < directions; ++k) {
+        const double angle = 2.0 * pi * k / directions;
+        const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
+        const double rim = (hole.radius + slack) * tree.sweep(hole.middle, (hole.radius + slack) * out, line);
+        if (!(rim < hole.radius + slack)) return 0.0;
+        const Vec3 from = hole.middle + (rim + step) * out;
+        const double rest = max_measured_wall * tree.sweep(from, max_measured_wall * out, line);
+        least = std::min(least, step + rest);
+    }
+    return least;
+}
+
 double overhang_share(const geometry::TriangleSurface& surface, const Vec3& up, double angle) {
     double lowest = infinity, all = 0.0, hanging = 0.0;
     for (const Vec3& v : surface.vertices) lowest = std::min(lowest, glm::dot(v, up));

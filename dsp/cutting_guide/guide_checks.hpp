@@ -73,6 +73,10 @@ struct SlotFit {
 /// when the wall on the kept side is missing.
 SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slot);
 
+/// m of solid between a hole and the next face beside it, in the thinnest of 24 directions at MadeHole::middle, at most
+/// max_measured_wall; 0 if the hole is open to a side there. `tree` is of the guide's surface, in the frame of `hole`.
+double hole_wall(const geometry::TriangleTree& tree, const MadeHole& hole);
+
 /// Share of the area whose normal looks more than `angle` below the horizon when the guide is printed along `up`; the
 /// lowest 0.3 mm lie on the plate and do not count.
 double overhang_share(const geometry::TriangleSurface& surface, const Vec3& up, double angle);

@@ -348,3 +348,41 @@ TEST_CASE("the nearest slot is that of the nearest wall, where the planes of two
     // On the plane of the second, but beside the wall of the first.
     CHECK(nearest_slot(slots, Vec3(-6.0 * mm, 0.0, 26.0 * mm)) == 0);
 }
+
+TEST_CASE("a hole beside which the guide is left out as too thin moves, or is left out") {
+    // A plate of 80 x 40 mm, 12 mm thick; a plane at 25° cuts the base to an edge at x = -19 mm.
+    GuideDesign design;
+    Vec3 corner[8];
+    for (int n = 0; n < 8; ++n) corner[n] = Vec3(n & 1 ? 40.0 : -40.0, n & 2 ? 20.0 : -20.0, n & 4 ? 6.0 : -6.0) * mm;
+    design.bone.vertices.assign(corner, corner + 8);
+    design.bone.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                             {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    design.cuts.push_back({{Vec3(0.0), Vec3(1.0, 0.0, 0.0)}, "cut", 'A'});
+    const double lean = 25.0 * degree, edge = -19.0 * mm;
+    design.settings.voxel = 0.5 * mm, design.settings.cover = 0.65, design.settings.thickness = 2.5 * mm;
+    const double bottom = 6.0 * mm + design.settings.offset;
+    design.base.push_back({Vec3(0.0), Vec3(1.0, 0.0, 0.0), -30.0 * mm, -1.5 * mm,
+                           reconstruction::Plane{Vec3(edge, 0.0, bottom), Vec3(-std::sin(lean), 0.0, std::cos(lean))}});
+    // 2.1 mm of wall before the edge is rounded, at half the thickness of the base.
+    const double radius = 1.5 * mm,
+                 at = edge + 0.5 * design.settings.thickness / std::tan(lean) + radius + 2.15 * mm;
+    design.holes.push_back({Vec3(at, 0.0, 0.0), Vec3(0.0, 0.0, -1.0), radius, "near", true});
+    const MadeGuide without = make_guide(design, run_in_turn);
+    CHECK(without.holes.empty());
+    CHECK(std::ranges::any_of(without.notes, [](const std::string& note) {
+        return note == "near: the guide around it would be too thin, and has no hole for it";
+    }));
+    design.holes[0].slide = Vec3(4.0 * mm, 0.0, 0.0);
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::flaws_of(made.surface) == "none");
+    REQUIRE(made.holes.size() == 1);
+    CHECK(made.holes[0].at.x > at + 0.2 * mm);
+    CHECK(made.holes[0].wall > 1.9 * mm);
+    CHECK(made.holes[0].wall < 3.0 * mm);
+    const geometry::TriangleTree tree(made.surface);
+    CHECK(hole_wall(tree, made.holes[0]) == Approx(made.holes[0].wall).margin(1e-6));
+    // A hole that is not there has no wall.
+    MadeHole none = made.holes[0];
+    none.middle.x += 4.0 * mm;
+    CHECK(hole_wall(tree, none) == 0.0);
+}

@@ -82,15 +82,16 @@ const Fields<FittedSlot>& slot_fields() {
     return all;
 }
 
-const Fields<cutting_guide::GuideHole>& hole_fields() {
-    using H = cutting_guide::GuideHole;
+const Fields<cutting_guide::MadeHole>& hole_fields() {
+    using H = cutting_guide::MadeHole;
     static const Fields<H> all =
         Fields<H>("hole of a guide")
-            .text("name", "hole", &H::name)
-            .vector("at_mm", "", from_si(2, "mm"), &H::at)
-            .vector("axis", "", fixed(4), &H::axis)
+            .text("name", "hole", [](const H& h) { return h.name; })
+            .vector("at_mm", "", from_si(2, "mm"), [](const H& h) { return h.at; })
+            .vector("axis", "", fixed(4), [](const H& h) { return h.axis; })
             .number("diameter_mm", "diameter", from_si(1, "mm"), [](const H& h) { return 2.0 * h.radius; })
-            .flag("predictive", "", &H::is_predictive)
+            .number("wall_mm", "wall around it", from_si(2, "mm"), [](const H& h) { return h.wall; })
+            .flag("predictive", "", [](const H& h) { return h.is_predictive; })
             .text("", "for",
                   [](const H& h) { return std::string(h.is_predictive ? "drilled for later" : "fixes the guide"); });
     return all;
