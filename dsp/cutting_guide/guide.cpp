@@ -30,6 +30,8 @@ constexpr double crumb = 8e-9;  // m³: smaller parts fall off and are removed
 constexpr double loose = 500e-9;  // m³: smaller parts may come off when thin ones are left out
 constexpr double max_samples = 150e6;
 constexpr std::size_t max_rounds = 3;  // of leaving out what is thin
+// m: of the grid of the bone. Neither this nor its origin depends on the voxel, so that a coarser mesh is one of the same solid.
+constexpr double bone_spacing = 0.5 * mm;
 constexpr int slide_steps = 8;  // of a hole
 
 /// A cut in the frame of the guide.
@@ -82,8 +84,7 @@ public:
         find_grid();
         const geometry::TriangleTree tree(bone_);
         const double cap = set_.offset + set_.thickness + 2.0 * mm;
-        const SeatedBone bone(bone_, tree, low_ - Vec3(1.0 * mm), high_ + Vec3(1.0 * mm),
-                              std::min(0.5 * mm, 1.5 * set_.voxel), cap, run_);
+        const SeatedBone bone(bone_, tree, low_ - Vec3(1.0 * mm), high_ + Vec3(1.0 * mm), bone_spacing, cap, run_);
         find_patches(bone);
         lift_rail(bone);
         GuideSolid solid(bone);
@@ -134,8 +135,67 @@ private:
             made_.thin_share = made_.thin_volume / (volume + made_.thin_volume);
             made_.loose_parts = contour.crumbs;
             note_trimmed(is_trimmed_at, contour.crumb_volume);
+            for (const Tube& tube : design_.tubes) made_.tubes.push_back(distance_to(tube, solid, tree));
             return contour;
         }
+    }
+
+    /// The mesh finds the place: that of the points along the tube, 0.25 mm apart, which is nearest to the guide or deepest
+    /// in it. Outside of the guide, the nearest points on the solid and on the line of the tube are then sought in turn, so
+    /// that the distance does not depend on the mesh: its triangles are up to voxel² / 8 / radius within round faces.
+    TubeDistance distance_to(const Tube& tube, const GuideSolid& solid, const geometry::TriangleTree& tree) const {
+        constexpr double step = 0.25 * mm;
+        std::vector<Vec3> line;
+        for (const Vec3& p : tube.points) line.push_back(to_guide_.apply(p));
+        if (line.size() == 1) line.push_back(line.front());
+        double least = max_tube_distance + tube.radius;
+        Vec3 at = line.front(), on_guide(0.0);
+        std::size_t piece = line.size();
+        for (std::size_t n = 0; n + 1 < line.size(); ++n) {
+            const int steps = 1 + static_cast<int>(glm::length(line[n + 1] - line[n]) / step);
+            for (int k = 0; k <= steps; ++k) {
+                const Vec3 p = glm::mix(line[n], line[n + 1], static_cast<double>(k) / steps);
+                const bool is_within = solid.value(p) < 0.0;
+                if (!is_within && least < 0.0) continue;
+                const auto near = is_within ? tree.nearest(p) : tree.nearest(p, least);
+                const double here = is_within ? -near.distance : near.distance;
+                if (here < least) least = here, at = p, on_guide = near.point, piece = n;
+            }
+        }
+        for (int round = 0; round < 20 && least > 0.0 && piece < line.size(); ++round) {
+            on_guide = nearest_on(solid, at, on_guide);
+            const Vec3 before = at;
+            for (std::size_t n = piece > 0 ? piece - 1 : 0; n < std::min(piece + 2, line.size() - 1); ++n)
+                if (const Vec3 q = closest_on_line(on_guide, line[n], line[n + 1]);
+                    glm::length(q - on_guide) < glm::length(at - on_guide))
+                    at = q;
+            least = glm::length(at - on_guide);
+            if (glm::length(at - before) < 0.1 * tube_tolerance) break;
+        }
+        return {std::min(least - tube.radius, max_tube_distance), made_.frame.apply(at)};
+    }
+
+    /// The point on the surface of the solid nearest to `p`, from `start` near it: steps along the surface towards `p`, each
+    /// led back onto the surface by the normal, while they come nearer.
+    static Vec3 nearest_on(const GuideSolid& solid, const Vec3& p, const Vec3& start) {
+        const auto onto = [&](Vec3 q) {
+            for (int n = 0; n < 4; ++n) q -= solid.value(q) * solid.normal(q);
+            return q;
+        };
+        Vec3 found = onto(start);
+        for (int n = 0; n < 30; ++n) {
+            const Vec3 normal = solid.normal(found), to = p - found;
+            const Vec3 next = onto(found + 0.5 * (to - glm::dot(to, normal) * normal));
+            if (!(glm::length(p - next) < glm::length(to) - 1e-3 * tube_tolerance)) break;
+            found = next;
+        }
+        return found;
+    }
+
+    static Vec3 closest_on_line(const Vec3& p, const Vec3& a, const Vec3& b) {
+        const Vec3 along = b - a;
+        const double length2 = glm::dot(along, along);
+        return length2 > 0.0 ? a + std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) * along : a;
     }
 
     void note_trimmed(const std::vector<bool>& is_trimmed_at, double loose_volume) {

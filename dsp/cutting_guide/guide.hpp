@@ -80,6 +80,21 @@ struct MadeHole : GuideHole {
     double wall = 0.0;  ///< m: the thinnest around it at half the thickness of the base, from the mesh (see hole_wall)
 };
 
+/// All points within `radius` of a line of points, such as a vessel; of a single point a ball.
+struct Tube {
+    std::vector<Vec3> points;  ///< m, at least one
+    double radius = 0.0;  ///< m
+};
+
+/// A tube and a guide where they are nearest.
+struct TubeDistance {
+    double distance = 0.0;  ///< m, between their surfaces, at most max_tube_distance; negative: they overlap
+    Vec3 at{0.0};  ///< m, on the middle line of the tube
+};
+
+/// Tubes farther from a guide are not measured, m. Nearer ones are exact to `tube_tolerance`, at any voxel.
+inline constexpr double max_tube_distance = 20e-3, tube_tolerance = 0.01e-3;
+
 /// A closed polygon of a glyph, m; filled by the non-zero rule.
 using Outline = std::vector<glm::dvec2>;
 
@@ -96,6 +111,7 @@ struct GuideDesign {
     std::vector<GuideCut> cuts;  ///< at least one
     std::vector<BaseSpan> base;  ///< at least one
     std::vector<GuideHole> holes;
+    std::vector<Tube> tubes;  ///< to keep clear of, in the frame of the bone
     std::array<GuideText, 2> text;  ///< above and below the letters
     std::vector<GuideText> letters;  ///< one per cut; empty: none
     GuideSettings settings;
@@ -130,6 +146,7 @@ struct MadeGuide {
     std::vector<MadeSlot> slots;
     std::vector<MadeHole> holes;  ///< those that the guide surrounds by a wall that is not too thin
     std::vector<MadeText> texts;
+    std::vector<TubeDistance> tubes;  ///< of each tube of the design
     std::optional<ThinWall> wall;  ///< the thinnest, see walls_of; text does not count; none: none below max_measured_wall
     double thin_volume = 0.0;  ///< m³ left out as thinner than GuideSettings::min_thickness, with the loose parts
     double thin_share = 0.0;  ///< of the volume of the guide before that

@@ -46,11 +46,11 @@ SeatedBone::SeatedBone(const geometry::TriangleSurface& bone, const geometry::Tr
                        const Vec3& high, double spacing, double cap, const RunJobs& run)
     : cap_(cap) {
     volume::Grid& grid = field_.grid;
-    grid.origin = low;
+    grid.origin = spacing * glm::floor(low / spacing);
     grid.spacing = Vec3(spacing);
     for (int axis = 0; axis < 3; ++axis)
         grid.size[static_cast<std::size_t>(axis)] =
-            std::max(2, static_cast<int>(std::ceil((high[axis] - low[axis]) / spacing)) + 1);
+            std::max(2, static_cast<int>(std::ceil((high[axis] - grid.origin[axis]) / spacing)) + 1);
     grid.values.assign(grid.count(), static_cast<float>(cap));
     top_.assign(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]), nowhere);
     raise(bone);

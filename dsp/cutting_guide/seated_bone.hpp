@@ -34,7 +34,8 @@ struct Patch {
 /// meshes that are open or wound the wrong way do not matter. m, in a frame whose z is the direction of removal.
 class SeatedBone {
 public:
-    /// `bone` in that frame; the grid covers `low` to `high` with this spacing. Distances beyond `cap` are not computed.
+    /// `bone` in that frame; the grid covers `low` to `high` with samples at multiples of this spacing, so
+    /// that it is the same bone in any such box. Distances beyond `cap` are not computed.
     SeatedBone(const geometry::TriangleSurface& bone, const geometry::TriangleTree& tree, const Vec3& low,
                const Vec3& high, double spacing, double cap, const RunJobs& run);
 

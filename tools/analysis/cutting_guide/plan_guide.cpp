@@ -31,7 +31,7 @@ using cutting_guide::GuideDesign;
 using cutting_guide::GuideHole;
 using cutting_guide::GuideText;
 
-constexpr double mesh_slack = 0.05 * mm;  // a mesh that is nearer to a vessel touches it
+constexpr double touch = 0.05 * mm;  // a guide that is nearer to a vessel touches it
 constexpr double jaw_cover = 0.65;  // of the height of the jaw: a placeholder
 constexpr double max_label = 16;        // characters
 
@@ -225,30 +225,29 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
     return design;
 }
 
-/// Vessels and perforators of the flap that come near enough to be named.
+/// Vessels of the flap and then its perforators, as the guide must keep clear of them.
+std::vector<cutting_guide::Tube> tubes_of(const reconstruction::Flap& flap, const GuideChoice& choice) {
+    std::vector<cutting_guide::Tube> tubes;
+    for (const reconstruction::FlapVessel& vessel : flap.vessels) tubes.push_back({vessel.points, vessel.radius});
+    for (const reconstruction::Perforator& p : flap.perforators) tubes.push_back({{p.at}, choice.perforator_radius});
+    return tubes;
+}
+
+/// Those that come near enough to be named.
 std::vector<NearVessel> vessels_near(const PlannedGuide& guide, const geometry::TriangleTree& tree,
                                      const reconstruction::Flap& flap, const GuideChoice& choice) {
-    constexpr double step = 0.25 * mm, reach = 10.0 * mm;
+    constexpr double reach = 10.0 * mm;
     std::vector<NearVessel> found;
+    auto measured = guide.made.tubes.begin();
     for (const reconstruction::FlapVessel& vessel : flap.vessels) {
-        NearVessel near{fmt::format("vessel '{}'", vessel.name), choice.vessel};
-        for (std::size_t n = 0; n + 1 < vessel.points.size(); ++n) {
-            const Vec3 along = vessel.points[n + 1] - vessel.points[n];
-            const int steps = 1 + static_cast<int>(glm::length(along) / step);
-            for (int k = 0; k <= steps; ++k) {
-                const Vec3 p = vessel.points[n] + static_cast<double>(k) / steps * along;
-                const double away = tree.nearest(p, near.away + vessel.radius).distance - vessel.radius;
-                if (away < near.away) near.away = away, near.at = p;
-            }
-        }
-        if (near.away < choice.vessel) found.push_back(std::move(near));
+        const NearVessel near{fmt::format("vessel '{}'", vessel.name), measured->distance, measured->at};
+        if (near.away < choice.vessel) found.push_back(near);
+        ++measured;
     }
     const cutting_guide::BaseSpan& line = guide.design.base.front();
     for (const reconstruction::Perforator& p : flap.perforators) {
-        NearVessel near{fmt::format("perforator '{}'", p.name),
-                        tree.nearest(p.at, choice.perforator + choice.perforator_radius).distance -
-                            choice.perforator_radius,
-                        p.at, true};
+        NearVessel near{fmt::format("perforator '{}'", p.name), measured->distance, p.at, true};
+        ++measured;
         Vec3 out = p.at - line.point;
         out -= glm::dot(out, line.axis) * line.axis;
         if (glm::length(out) > 0.0)
@@ -383,7 +382,7 @@ void refuse_guide(const PlannedGuide& guide) {
     if (!(guide.seat.contact_area > 0.0))
         throw Error("the guide does not touch the bone: choose another approach (--turn) or a wider base (--wrap)");
     for (const NearVessel& v : guide.vessels) {
-        if (v.away >= mesh_slack && !v.is_covered) continue;
+        if (v.away >= touch && !v.is_covered) continue;
         throw Error(fmt::format(
             "the guide {}, at {}: another approach (--turn), a narrower base (--wrap) or segments from another part of "
             "the bone avoid it",
@@ -422,6 +421,7 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
     guide.kerf = study.inputs().kerf;
     guide.design = design_guide(study, title, choice);
     guide.limits = choice.limits;
+    if (guide.bone == GuideBone::fibula) guide.design.tubes = tubes_of(study.flap(), choice);
     guide.made = cutting_guide::make_guide(guide.design, run);
     const geometry::TriangleSurface& surface = guide.made.surface;
     const geometry::TriangleTree tree(surface), bone(guide.design.bone);
