@@ -219,11 +219,11 @@ private:
         for (MadeSlot& slot : made_.slots) {
             if (slot.sides == Sides::one) continue;
             const SlotFit fit = refit_slot(placed, slot);
-            if (fit.other_area >= min_wall_share * slot.area()) continue;
+            if (fit.other_area >= set_.min_wall_share * slot.area()) continue;
             made_.notes.push_back(fmt::format(
                 "of the second wall of slot {} {:.0f} % are left, less than {:.0f} %: the blade is held on the kept side "
                 "only",
-                slot.cut.letter, 100.0 * fit.other_area / slot.area(), 100.0 * min_wall_share));
+                slot.cut.letter, 100.0 * fit.other_area / slot.area(), 100.0 * set_.min_wall_share));
             slot.sides = Sides::one, slot.play.reset();
         }
     }
@@ -250,11 +250,11 @@ private:
             s.sides = set_.sides;
             const double tilt = std::asin(std::clamp(std::abs(s.normal.z), 0.0, 1.0)),
                          across = std::abs(s.normal.x) / std::max(1e-9, std::hypot(s.normal.x, s.normal.y));
-            if (tilt > 70.0 * degree || across < 0.35)
+            if (tilt > set_.max_lean || across < std::cos(set_.max_lean))
                 throw Error(fmt::format(
                     "no blade can come along the approach into the plane of cut {} ({}): they are {:.0f}° apart; "
                     "choose another approach",
-                    c.letter, c.name, tilt > 70.0 * degree ? tilt / degree : std::acos(across) / degree));
+                    c.letter, c.name, tilt > set_.max_lean ? tilt / degree : std::acos(across) / degree));
             const reconstruction::Plane plane{s.origin, s.normal};
             const reconstruction::Section section = reconstruction::section_of(bone_, plane, &s.origin);
             if (section.points.empty())
@@ -382,7 +382,7 @@ private:
         const double most = bone.top_within(Vec3(rail_from_, rail_y_ - set_.rail, 0.0), Vec3(rail_to_, rail_y_, 0.0));
         const double lift = most + set_.rail_clearance - rail_low_;
         if (!(lift > 0.0)) return;
-        if (lift > 15.0 * mm)
+        if (lift > set_.max_lift)
             throw Error(fmt::format(
                 "bone stands {:.0f} mm in the way of the rail that joins the slots: choose another approach, or make "
                 "one guide per cut",

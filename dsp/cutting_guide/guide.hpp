@@ -2,6 +2,7 @@
 // A printed guide that sits on a bone and holds the blade of a saw in the planes of a plan.
 #pragma once
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/jobs.hpp"
 #include "dsp/core/types.hpp"
 #include "dsp/geometry/dual_contour.hpp"
@@ -30,7 +31,7 @@ enum class Sides {
 /// Sizes in m. BoneReconstructionPlanner's values unless noted.
 struct GuideSettings {
     double thickness = 4e-3;      ///< of the base
-    double wrap = 2.0943951;      ///< rad: the base reaches half of it to either side of the direction of removal
+    double wrap = 120.0 * degree;      ///< rad: the base reaches half of it to either side of the direction of removal
     double offset = 0.3e-3;       ///< between base and bone; 0.5e-3 over periosteum
     double blade = 0.4e-3;        ///< thickness that the blade cuts; a placeholder
     double clearance = 0.25e-3;   ///< per side of the blade: 0.25e-3 for SLA, 0.4e-3 for FDM
@@ -47,6 +48,9 @@ struct GuideSettings {
     double text_depth = 1e-3;
     double voxel = 0.35e-3;  ///< of the grid from which the mesh is made; edges are sharp at any
     double min_wall = 2e-3;  ///< what is thinner is left out; remembered
+    double min_wall_share = 0.5;  ///< of the second wall of a slot; with less the slot is a ledge: a placeholder
+    double max_lean = 70.0 * degree;  ///< rad, between the approach and a cut: a placeholder
+    double max_lift = 15e-3;  ///< by which slots may rise so that the rail clears the bone: a placeholder
 
     double slot_width() const { return blade + 2.0 * clearance; }
     /// m: no part of the guide may be thinner.
@@ -162,14 +166,12 @@ struct MadeGuide {
 /// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. What is thinner than
 /// min_thickness is left out, and stated in `thin_share`: strips between two slots, which have notes of their own, do not
 /// count there. Throws Error for
-/// planes through which no blade can come along the removal (more than 70° between them), for bone that stands in the
+/// planes through which no blade can come along the removal (more than max_lean between them), for bone that stands in the
 /// way of the rail, for guides that need more than 150 million samples and numbers that cannot be.
 MadeGuide make_guide(const GuideDesign& design, const RunJobs& run);
 
 /// Measured walls may be thinner than they should be by this much, m.
 inline constexpr double wall_slack = 0.1e-3;
-/// Of a slot's wall, this share must be there: a placeholder.
-inline constexpr double min_wall_share = 0.5;
 
 /// The index of the slot whose wall on the kept side is nearest to `p` (frame of the bone); there must be one. Distances
 /// to the walls, not to their planes: the planes of two cuts cross, so that beyond the crossing the nearer plane is that

@@ -18,7 +18,7 @@ namespace tactus::cutting_guide {
 namespace {
 
 constexpr double opposite = -0.8660254037844386;  // cosine of 150°
-constexpr double path_length = 60.0 * mm, facing = 0.8, farthest_relief = 4.0 * mm, contact_margin = 0.1 * mm;
+constexpr double facing = 0.8, farthest_relief = 4.0 * mm, contact_margin = 0.1 * mm;
 constexpr int chunk = 2048, sample = 32;  // facets of a job; every which is sampled first
 
 /// A triangle as its middle, unit normal and area.
@@ -166,7 +166,7 @@ Walls walls_of(const geometry::TriangleSurface& surface, const geometry::Triangl
 }
 
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
-             double offset, double gap, const RunJobs& run) {
+             double offset, double gap, double free_path, const RunJobs& run) {
     struct Part {
         double contact = 0.0, relieved = 0.0, least = infinity;
         bool is_free = true;
@@ -190,7 +190,7 @@ Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTre
             }
             // Facets are far smaller than what blocks a guide.
             if (count++ % 4 != 0 || !part.is_free) return;
-            if (bone.sweep(f.middle, path_length * removal, 0.02 * mm) < 1.0)
+            if (bone.sweep(f.middle, free_path * removal, 0.02 * mm) < 1.0)
                 part.is_free = false, part.blocked = f.middle;
         });
     });

@@ -45,7 +45,7 @@ struct Seat {
     double contact_area = 0.0;  ///< m²: of the faces that look at the bone, at `offset` ± 0.1 mm from it
     double relieved_area = 0.0;  ///< m²: of those that are farther, up to 4 mm: undercuts of the approach
     double min_distance = 0.0;  ///< m, from the bone; infinite: no part is nearer than 4 mm; never negative
-    bool is_path_free = true;  ///< no part meets bone on 60 mm along the removal, nor on the way back
+    bool is_path_free = true;  ///< no part meets bone on `free_path` along the removal, nor on the way back
     Vec3 blocked_at{0.0};  ///< where it does, on the guide
     double play = 0.0;  ///< m, of its middle, in the direction in which the bone holds it least
     Vec3 play_direction{0.0};  ///< unit
@@ -57,9 +57,9 @@ struct Seat {
 inline constexpr double max_play = 20e-3, max_play_angle = 0.5;  // m, rad
 
 /// Play: all motions for which contact faces move by no more than `gap` along their normals (root of the mean square, so
-/// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives max_play.
+/// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives max_play. m.
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
-             double offset, double gap, const RunJobs& run);
+             double offset, double gap, double free_path, const RunJobs& run);
 
 /// The walls of a slot as they are in the mesh.
 struct SlotFit {

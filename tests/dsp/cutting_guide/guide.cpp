@@ -50,7 +50,7 @@ void check_guide(unsigned seed, int segments) {
     }
     const geometry::TriangleTree bone(design.bone);
     const Seat seat =
-        seat_of(made.surface, bone, glm::normalize(design.removal), design.settings.offset, 0.3 * mm, run_in_turn);
+        seat_of(made.surface, bone, glm::normalize(design.removal), design.settings.offset, 0.3 * mm, 60.0 * mm, run_in_turn);
     CHECK(seat.is_path_free);
     CHECK(seat.min_distance > design.settings.offset - 0.1 * mm);
     CHECK(seat.contact_share() > 0.5);
@@ -110,7 +110,7 @@ TEST_CASE("a base that is as thick as the least wall keeps all of its contact", 
     design.settings.voxel = 0.6 * mm, design.settings.thickness = 2.0 * mm, design.settings.min_wall = 2.0 * mm;
     const geometry::TriangleTree bone(design.bone);
     const auto contact_of = [&](const MadeGuide& made) {
-        return seat_of(made.surface, bone, glm::normalize(design.removal), design.settings.offset, 0.3 * mm,
+        return seat_of(made.surface, bone, glm::normalize(design.removal), design.settings.offset, 0.3 * mm, 60.0 * mm,
                        run_in_turn)
             .contact_area;
     };
@@ -271,14 +271,14 @@ TEST_CASE("a smooth shaft does not hold a guide along itself and a ball does not
                                             [](double, double) { return 7.3 * mm; }),
                 [](const Vec3& v) { return v.x > 1.0 * mm && glm::length(Vec3(v.x, v.y, 0.0)) > 7.0 * mm; });
     const geometry::TriangleTree bone(shaft);
-    const Seat seat = seat_of(sleeve, bone, Vec3(1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, run_in_turn);
+    const Seat seat = seat_of(sleeve, bone, Vec3(1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, 60.0 * mm, run_in_turn);
     CHECK(seat.contact_share() > 0.99);
     CHECK(seat.play == Approx(max_play));
     CHECK(std::abs(seat.play_direction.z) > 0.99);
     CHECK(seat.min_distance == Approx(0.3 * mm).margin(0.02 * mm));
     CHECK(seat.is_path_free);
     // Into the bone nothing can be taken off.
-    CHECK(!seat_of(sleeve, bone, Vec3(-1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, run_in_turn).is_path_free);
+    CHECK(!seat_of(sleeve, bone, Vec3(-1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, 60.0 * mm, run_in_turn).is_path_free);
 }
 
 TEST_CASE("a guide that cannot be made is refused with the reason") {

@@ -32,7 +32,6 @@ using cutting_guide::GuideHole;
 using cutting_guide::GuideText;
 
 constexpr double touch = 0.05 * mm;  // a guide that is nearer to a vessel touches it
-constexpr double jaw_cover = 0.65;  // of the height of the jaw: a placeholder
 constexpr double max_label = 16;        // characters
 
 Vec3 turned(const Vec3& v, const Vec3& axis, double angle) { return glm::angleAxis(angle, axis) * v; }
@@ -177,7 +176,7 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
     design.settings = choice.settings;
     design.settings.offset = choice.offset.value_or(0.3 * mm);
     // The walls end below the teeth; the blade goes on in the plane.
-    design.settings.cover = jaw_cover;
+    design.settings.cover = choice.jaw_cover;
     design.bone = *in.jaw;
     Vec3 middle(0.0), at(0.0), out(0.0);
     for (const Vec3& v : in.jaw->vertices) middle += v / static_cast<double>(in.jaw->vertices.size());
@@ -229,7 +228,7 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
 std::vector<cutting_guide::Tube> tubes_of(const reconstruction::Flap& flap, const GuideChoice& choice) {
     std::vector<cutting_guide::Tube> tubes;
     for (const reconstruction::FlapVessel& vessel : flap.vessels) tubes.push_back({vessel.points, vessel.radius});
-    for (const reconstruction::Perforator& p : flap.perforators) tubes.push_back({{p.at}, choice.perforator_radius});
+    for (const reconstruction::Perforator& p : flap.perforators) tubes.push_back({{p.at}, choice.limits.perforator_radius});
     return tubes;
 }
 
@@ -241,7 +240,7 @@ std::vector<NearVessel> vessels_near(const PlannedGuide& guide, const geometry::
     auto measured = guide.made.tubes.begin();
     for (const reconstruction::FlapVessel& vessel : flap.vessels) {
         const NearVessel near{fmt::format("vessel '{}'", vessel.name), measured->distance, measured->at};
-        if (near.away < choice.vessel) found.push_back(near);
+        if (near.away < choice.limits.vessel) found.push_back(near);
         ++measured;
     }
     const cutting_guide::BaseSpan& line = guide.design.base.front();
@@ -251,8 +250,8 @@ std::vector<NearVessel> vessels_near(const PlannedGuide& guide, const geometry::
         Vec3 out = p.at - line.point;
         out -= glm::dot(out, line.axis) * line.axis;
         if (glm::length(out) > 0.0)
-            near.is_covered = tree.sweep(p.at, reach * glm::normalize(out), choice.perforator_radius) < 1.0;
-        if (near.is_covered || near.away < choice.perforator) found.push_back(std::move(near));
+            near.is_covered = tree.sweep(p.at, reach * glm::normalize(out), choice.limits.perforator_radius) < 1.0;
+        if (near.is_covered || near.away < choice.limits.perforator) found.push_back(std::move(near));
     }
     return found;
 }
@@ -280,21 +279,22 @@ std::string meeting_of(const NearVessel& v) {
     return fmt::format("overlaps {} by {:.2f} mm", v.name, -v.away / mm);
 }
 
-void warn_clinically(PlannedGuide& guide, const GuideChoice& choice) {
+void warn_clinically(PlannedGuide& guide) {
+    const GuideLimits& limits = guide.choice.limits;
     const auto warn = [&](const char* code, std::string text) { guide.warnings.push_back({code, std::move(text)}); };
     const cutting_guide::Seat& seat = guide.seat;
-    if (seat.play > 1.0 * mm)
+    if (seat.play > limits.max_play)
         warn(
             "seat-play",
             seat.play >= cutting_guide::max_play
                 ? std::string("the bone does not hold the guide along one direction, as along a smooth shaft: mark its "
                               "place by a screw or a distance from the end of the bone")
                 : fmt::format("with a gap of {:.1f} mm the guide can move by {:.1f} mm on the bone",
-                              choice.seat_gap / mm, seat.play / mm));
-    if (seat.play_angle > 2.0 * degree)
+                              limits.seat_gap / mm, seat.play / mm));
+    if (seat.play_angle > limits.max_turn)
         warn("seat-angle", fmt::format("with a gap of {:.1f} mm the guide can turn by {:.1f}° on the bone",
-                                       choice.seat_gap / mm, seat.play_angle / degree));
-    if (seat.contact_share() < 0.5)
+                                       limits.seat_gap / mm, seat.play_angle / degree));
+    if (seat.contact_share() < limits.min_contact_share)
         warn("contact", fmt::format("only {:.0f} % of the faces that look at the bone touch it; the others lie over "
                                     "undercuts",
                                     100.0 * seat.contact_share()));
@@ -302,19 +302,19 @@ void warn_clinically(PlannedGuide& guide, const GuideChoice& choice) {
         if (!slot.play)
             warn("ledge",
                  fmt::format("slot {} is a ledge: it does not hold the blade on the removed side", slot.cut.letter));
-    if (guide.overhang > 0.1)
+    if (guide.overhang > limits.max_overhang_share)
         warn("overhang",
              fmt::format("{:.0f} % of the surface hangs over by more than {:.0f}° when the guide is printed "
                          "with the bone's side up",
-                         100.0 * guide.overhang, choice.overhang / degree));
+                         100.0 * guide.overhang, limits.overhang / degree));
     for (const GuideHole& hole : guide.made.holes)
         for (const GuideCut& cut : guide.design.cuts)
-            if (const auto away = hole_to_cut(hole, cut); away && *away < 1.0 * mm)
+            if (const auto away = hole_to_cut(hole, cut); away && *away < limits.hole_to_cut)
                 warn("hole-near-cut", fmt::format("{} lies {:.1f} mm from cut {}", hole.name, *away / mm, cut.letter));
     for (const NearVessel& v : guide.vessels)
         warn(v.is_perforator ? "perforator" : "vessel",
              fmt::format("{} runs {:.1f} mm from the guide, less than {:.1f} mm (a placeholder)", v.name, v.away / mm,
-                         (v.is_perforator ? choice.perforator : choice.vessel) / mm));
+                         (v.is_perforator ? limits.perforator : limits.vessel) / mm));
 }
 
 }  // namespace
@@ -365,12 +365,12 @@ void refuse_guide(const PlannedGuide& guide) {
             near_slot(guide, guide.made.wall->at), guide.made.wall->thickness / mm, wanted / mm, set.min_thickness() / mm,
             cutting_guide::wall_slack / mm, place_of(guide.made.wall->at)));
     }
-    if (guide.made.thin_share > guide.limits.max_thin_share)
+    if (guide.made.thin_share > guide.choice.limits.max_thin_share)
         throw Error(fmt::format(
             "{:.1f} % of the guide's volume are left out as thinner than {:.1f} mm, more than {:.0f} % (a placeholder): a "
             "thicker base (--thickness), thicker walls of the slots (--wall), more space between the segments "
             "('between_space_mm' of the inputs) or a lower least wall (--min-wall) keep more of it",
-            100.0 * guide.made.thin_share, set.min_thickness() / mm, 100.0 * guide.limits.max_thin_share));
+            100.0 * guide.made.thin_share, set.min_thickness() / mm, 100.0 * guide.choice.limits.max_thin_share));
     if (!guide.seat.is_path_free) {
         throw Error(fmt::format("bone is in the way of the guide along its approach {}, at {}: turn it (--turn)",
                                 near_slot(guide, guide.seat.blocked_at), place_of(guide.seat.blocked_at)));
@@ -396,12 +396,12 @@ void refuse_guide(const PlannedGuide& guide) {
     for (std::size_t n = 0; n < guide.refits.size(); ++n) {
         const cutting_guide::SlotFit& fit = guide.refits[n];
         const cutting_guide::MadeSlot& slot = guide.made.slots[n];
-        if (const double share = fit.kept_area / slot.area(); share < cutting_guide::min_wall_share)
+        if (const double share = fit.kept_area / slot.area(); share < set.min_wall_share)
             throw Error(fmt::format(
                 "of the wall of slot {} ({}) that lies on plan, {:.0f} % are left beside its neighbour, less than "
                 "{:.0f} % (a placeholder): more space between the segments ('between_space_mm' of the inputs), a lower "
                 "slot (--depth), or another approach (--turn) leaves more",
-                slot.cut.letter, slot.cut.name, 100.0 * share, 100.0 * cutting_guide::min_wall_share));
+                slot.cut.letter, slot.cut.name, 100.0 * share, 100.0 * set.min_wall_share));
         if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
             throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan, more than 0.05 mm or 0.1°: a finer "
                                     "grid (--voxel) or another approach (--turn) may mend that",
@@ -420,7 +420,7 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
     guide.bone = choice.bone;
     guide.kerf = study.inputs().kerf;
     guide.design = design_guide(study, title, choice);
-    guide.limits = choice.limits;
+    guide.choice = choice;
     if (guide.bone == GuideBone::fibula) guide.design.tubes = tubes_of(study.flap(), choice);
     guide.made = cutting_guide::make_guide(guide.design, run);
     const geometry::TriangleSurface& surface = guide.made.surface;
@@ -429,8 +429,8 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
     guide.intersections = geometry::self_intersections(surface, 100, run).size();
     guide.volume = mesh::volume_of(surface);
     guide.seat = cutting_guide::seat_of(surface, bone, glm::normalize(guide.design.removal),
-                                        guide.design.settings.offset, choice.seat_gap, run);
-    guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.overhang);
+                                        guide.design.settings.offset, choice.limits.seat_gap, choice.limits.free_path, run);
+    guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.limits.overhang);
     for (const cutting_guide::MadeSlot& slot : guide.made.slots)
         guide.refits.push_back(cutting_guide::refit_slot(surface, slot));
     if (guide.bone == GuideBone::fibula) guide.vessels = vessels_near(guide, tree, study.flap(), choice);
@@ -441,7 +441,7 @@ PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const 
     PlannedGuide guide = measured_guide(study, title, choice);
     refuse_guide(guide);
     for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
-    warn_clinically(guide, choice);
+    warn_clinically(guide);
     const reconstruction::FibulaPlan placed = study.placed_plan();
     for (std::size_t n = 0; n < placed.segments.size(); ++n) {
         const Pose &now = placed.segments[n].donor_to_target, &planned = study.fibula().segments[n].donor_to_target;

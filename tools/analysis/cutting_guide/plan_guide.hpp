@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/mesh/mesh.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/cutting_guide/guide.hpp"
 #include "dsp/cutting_guide/guide_checks.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
@@ -16,9 +17,18 @@ namespace tactus::analysis {
 enum class GuideBone { fibula, jaw };
 const char* name_of(GuideBone bone);  ///< "fibula", "jaw"
 
-/// Thresholds of refusals and warnings.
+/// Thresholds of refusals and warnings; guide_limits() lists them with their sources. Most are placeholders. m and rad.
 struct GuideLimits {
-    double max_thin_share = 0.05;  ///< of the volume, that is left out as too thin: a placeholder
+    double max_thin_share = 0.05;  ///< of the volume, that is left out as too thin
+    double free_path = 60e-3;  ///< along the approach
+    double seat_gap = 0.3e-3;  ///< for Seat::play
+    double max_play = 1e-3, max_turn = 2.0 * degree;  ///< of the guide on the bone
+    double min_contact_share = 0.5;
+    double overhang = 45.0 * degree;  ///< printers hold walls that lean less
+    double max_overhang_share = 0.1;
+    double vessel = 3e-3, perforator = 3e-3;  ///< nearer ones warn
+    double perforator_radius = 0.3e-3;  ///< Heitmann 2003
+    double hole_to_cut = 1e-3;
 };
 
 struct GuideChoice {
@@ -29,11 +39,7 @@ struct GuideChoice {
     double turn =
         0.0;  ///< rad: the approach, about the donor's line from lateral (towards the front), or about the jaw's cuts
     std::string label;  ///< engraved; empty: the plan's title
-    double seat_gap = 0.3e-3;  ///< m, for Seat::play
-    double overhang = 0.7853981634;  ///< rad: printers hold walls that lean less
-    double perforator = 3.0e-3;  ///< m: nearer perforators warn; a placeholder
-    double perforator_radius = 0.3e-3;  ///< m (Heitmann 2003)
-    double vessel = 3.0e-3;  ///< m; a placeholder
+    double jaw_cover = 0.65;  ///< GuideSettings::cover on a jaw: a placeholder
     GuideLimits limits;
 };
 
@@ -53,8 +59,8 @@ struct NearVessel {
 
 struct PlannedGuide {
     GuideBone bone = GuideBone::fibula;
+    GuideChoice choice;
     cutting_guide::GuideDesign design;
-    GuideLimits limits;
     cutting_guide::MadeGuide made;
     mesh::MeshTopology topology;
     std::size_t intersections = 0;  ///< pairs of triangles of the mesh, at most 100

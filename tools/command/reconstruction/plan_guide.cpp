@@ -6,6 +6,7 @@
 #include "assets/plan/plan_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/cutting_guide/guide_limits.hpp"
 #include "tools/analysis/cutting_guide/guide_task.hpp"
 #include "tools/command/plan/plan_options.hpp"
 #include "tools/report/cutting_guide/guide_report.hpp"
@@ -26,7 +27,8 @@ struct GuideOptions : PlanChoice {
     std::string bone = "fibula", printer = "sla", label;
     int cut = 0, sides = 3;
     std::optional<double> blade, clearance, offset;
-    double thickness = 4.0, wrap = 120.0, depth = 15.0, wall = 3.0, screw = 3.0, turn = 0.0, voxel = 0.35, min_wall = 2.0;
+    double thickness = 4.0, wrap = 120.0, depth = 15.0, wall = 3.0, screw = 3.0, turn = 0.0, voxel = 0.35;
+    std::vector<double> limits;  // of guide_limits(), in their units
 };
 
 analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy& study) {
@@ -43,7 +45,8 @@ analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy
     set.clearance = o.clearance ? *o.clearance * mm : (o.printer == "fdm" ? 0.4 : 0.25) * mm;
     set.thickness = o.thickness * mm, set.wrap = o.wrap * degree, set.depth = o.depth * mm, set.wall = o.wall * mm;
     set.screw_radius = 0.5 * o.screw * mm, set.voxel = o.voxel * mm;
-    set.min_wall = o.min_wall * mm;
+    for (std::size_t n = 0; n < o.limits.size(); ++n)
+        analysis::guide_limits()[n].in(choice) = o.limits[n] * analysis::guide_limits()[n].si;
     set.sides = static_cast<cutting_guide::Sides>(o.sides);
     return choice;
 }
@@ -108,9 +111,6 @@ Action declare_plan_guide(VerbOptions& verb) {
         .shows_default();
     verb.add("--depth", o->depth, "mm of a slot above the bone").range(3.0, 40.0).shows_default();
     verb.add("--wall", o->wall, "mm of a slot's walls").range(1.0, 10.0).shows_default();
-    verb.add("--min-wall", o->min_wall, "mm: what is thinner is left out, as it may break when printed")
-        .range(0.5, 5.0)
-        .shows_default();
     verb.add("--screw", o->screw, "mm, diameter of the holes that fix the guide").range(0.5, 6.0).shows_default();
     verb.add("--turn", o->turn,
              "degrees by which the approach is turned: of a fibula from lateral to the front, of a jaw about its cuts")
@@ -118,6 +118,15 @@ Action declare_plan_guide(VerbOptions& verb) {
         .shows_default();
     verb.add("--label", o->label, "pseudonym to engrave (default: the plan's title)");
     verb.add("--voxel", o->voxel, "mm of the grid behind the mesh").range(0.1, 0.5).shows_default();
+    const analysis::GuideChoice usual;
+    for (const analysis::GuideLimit& limit : analysis::guide_limits()) o->limits.push_back(limit.of(usual) / limit.si);
+    for (std::size_t n = 0; n < o->limits.size(); ++n) {
+        const analysis::GuideLimit& limit = analysis::guide_limits()[n];
+        verb.add(std::string(limit.option), o->limits[n],
+                 fmt::format("{} {} ({})", limit.unit, limit.about, limit.source))
+            .range(limit.low, limit.high)
+            .shows_default();
+    }
     return [o] { return make_guide(*o); };
 }
 

@@ -2,6 +2,7 @@
 #include "tools/report/cutting_guide/guide_report.hpp"
 
 #include "dsp/core/constants.hpp"
+#include "tools/analysis/cutting_guide/guide_limits.hpp"
 #include "tools/render/flap_scene.hpp"
 #include "tools/report/cutting_guide/guide_drawing.hpp"
 #include "tools/report/reconstruction/fibula_result.hpp"
@@ -119,7 +120,7 @@ bool is_held(const analysis::PlannedGuide& g) { return g.seat.play < cutting_gui
 const Fields<analysis::PlannedGuide>& seat_play_fields() {
     using G = analysis::PlannedGuide;
     static const Fields<G> all =
-        Fields<G>("play of a guide on its bone, at a gap of 0.3 mm")
+        Fields<G>("play of a guide on its bone, at a gap of seat_gap_mm of 'limits'")
             .number("mm", "", from_si(1, "mm"), [](const G& g) { return g.seat.play; })
             .number("deg", "", from_si(1, "°"), [](const G& g) { return g.seat.play_angle; })
             .vector("direction", "", fixed(3), [](const G& g) { return g.seat.play_direction; })
@@ -163,7 +164,7 @@ std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
     const auto from = [&](double value, double other, const char* source) {
         return std::string(is(value, other) ? source : "given");
     };
-    const char *planner = "BoneReconstructionPlanner", *placeholder = "a placeholder";
+    const char* planner = "BoneReconstructionPlanner";
     const bool on_fibula = g.bone == analysis::GuideBone::fibula;
     return {
         {"distance from the bone", in_mm(set.offset),
@@ -180,8 +181,29 @@ std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
          is(set.clearance, usual.clearance) ? "of a printer by light (sla)"
                                             : from(set.clearance, 0.4 * mm, "of a printer by filament (fdm)")},
         {"hole of a screw", in_mm(2.0 * set.screw_radius), from(set.screw_radius, usual.screw_radius, planner)},
-        {"thinnest part", in_mm(set.min_thickness()), from(set.min_thickness(), usual.min_wall, placeholder)},
     };
+}
+
+/// Thresholds, and sizes without an option of their own, with their sources.
+std::vector<SourcedValue> limits_of(const analysis::PlannedGuide& g) {
+    std::vector<SourcedValue> all;
+    const analysis::GuideChoice usual;
+    for (const analysis::GuideLimit& limit : analysis::guide_limits()) {
+        const bool is_usual = std::abs(limit.of(g.choice) - limit.of(usual)) < 1e-6 * limit.si;
+        all.push_back({std::string(limit.about), limit.text_of(g.choice), std::string(is_usual ? limit.source : "given")});
+    }
+    return all;
+}
+
+const Fields<analysis::GuideChoice>& limit_fields() {
+    static const Fields<analysis::GuideChoice> all = [] {
+        Fields<analysis::GuideChoice> made("thresholds of a guide");
+        for (const analysis::GuideLimit& limit : analysis::guide_limits())
+            made.number(limit.key, "", limit.unit == "%" ? fixed(0, "%", "1") : from_si(1, std::string(limit.unit)),
+                        [&limit](const analysis::GuideChoice& c) { return limit.of(c); });
+        return made;
+    }();
+    return all;
 }
 
 const Fields<analysis::PlannedGuide>& planned_fields() {
@@ -218,17 +240,19 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
             .rows("holes", "holes", hole_fields(), [](const G& g) -> const auto& { return g.made.holes; })
             .number("play_deg", "", from_si(1, "°"), greatest_play)
             .child("seat_play", "", seat_play_fields(), [](const G& g) -> const G& { return g; })
-            .text("", "play on the bone at a gap of 0.3 mm, root mean square",
+            .text("", "play on the bone, root mean square",
                   [](const G& g) {
-                      return is_held(g)
-                                 ? fmt::format("{:.1f} mm, {:.1f}°", g.seat.play / mm, g.seat.play_angle / degree)
-                                 : std::string("not held along one direction");
+                      return is_held(g) ? fmt::format("{:.1f} mm, {:.1f}° at a gap of {:.1f} mm", g.seat.play / mm,
+                                                      g.seat.play_angle / degree, g.choice.limits.seat_gap / mm)
+                                        : std::string("not held along one direction");
                   })
             .number("contact_share", "faces on the bone that touch it", fixed(0, "%", "1"),
                     [](const G& g) { return g.seat.contact_share(); })
-            .number("overhang_share", "overhang over 45° when printed with the bone's side up", fixed(0, "%", "1"),
+            .number("overhang_share", "surface that hangs over when printed with the bone's side up", fixed(0, "%", "1"),
                     &G::overhang)
             .rows("", "sizes", sourced_fields(), sizes_of)
+            .rows("", "limits", sourced_fields(), limits_of)
+            .child("limits", "", limit_fields(), [](const G& g) -> const auto& { return g.choice; })
             .rows("warnings", "", guide_warning_fields(), &G::warnings);
     return all;
 }

@@ -3,9 +3,12 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
+#include "tools/analysis/cutting_guide/guide_limits.hpp"
 #include "tools/analysis/cutting_guide/plan_guide.hpp"
 
+#include <set>
 #include <string>
+#include <string_view>
 
 using namespace tactus;
 using namespace tactus::analysis;
@@ -54,6 +57,20 @@ TEST_CASE("a guide that lost more than a twentieth as too thin is refused with w
     CHECK_THAT(refusal(guide), ContainsSubstring("6.2 % of the guide's volume are left out as thinner than 2.0 mm"));
     CHECK_THAT(refusal(guide), ContainsSubstring("--thickness"));
     CHECK_THAT(refusal(guide), ContainsSubstring("--min-wall"));
-    guide.limits.max_thin_share = 0.08;
+    guide.choice.limits.max_thin_share = 0.08;
     CHECK(refusal(guide) == "");
+}
+
+TEST_CASE("each limit of a guide is a value of its own with a default in range and a source") {
+    GuideChoice choice;
+    std::set<const double*> places;
+    std::set<std::string_view> keys;
+    for (const GuideLimit& limit : guide_limits()) {
+        INFO(limit.option);
+        CHECK(places.insert(&limit.in(choice)).second);
+        CHECK(keys.insert(limit.key).second);
+        CHECK(limit.of(choice) / limit.si >= limit.low);
+        CHECK(limit.of(choice) / limit.si <= limit.high);
+        CHECK(!limit.source.empty());
+    }
 }
