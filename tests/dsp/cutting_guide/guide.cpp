@@ -386,3 +386,44 @@ TEST_CASE("a hole beside which the guide is left out as too thin moves, or is le
     none.middle.x += 4.0 * mm;
     CHECK(hole_wall(tree, none) == 0.0);
 }
+
+// Costly: a guide is meshed at four voxels.
+TEST_CASE("the distance of a guide from a vessel does not depend on the voxel", "[slow]") {
+    GuideDesign design = test::random_guide(3, 1);
+    const BaseSpan& base = design.base.front();
+    const Vec3 up = glm::normalize(design.removal), side = glm::cross(up, base.axis);
+    const auto tube = [&](double away, double height, double radius) {
+        const Vec3 at = base.point + away * side + height * up;
+        return Tube{{at + (base.from - 10.0 * mm) * base.axis, at + (base.to + 10.0 * mm) * base.axis}, radius};
+    };
+    // Beside the base on either side of the bone, over it, and a ball over its end.
+    design.tubes = {tube(14.0 * mm, -2.0 * mm, 1.5 * mm), tube(-16.0 * mm, -4.0 * mm, 1.0 * mm),
+                    tube(12.0 * mm, 12.0 * mm, 0.5 * mm)};
+    design.tubes.push_back({{base.point + (base.from - 3.0 * mm) * base.axis + 12.0 * mm * up}, 0.3 * mm});
+    // One far away, and one through the base.
+    design.tubes.push_back(tube(60.0 * mm, 0.0, 1.0 * mm));
+    design.tubes.push_back(tube(0.0, 10.0 * mm, 1.0 * mm));
+    std::vector<MadeGuide> made;
+    for (const double voxel : {0.6 * mm, 0.47 * mm, 0.35 * mm, 0.25 * mm}) {
+        design.settings.voxel = voxel;
+        made.push_back(make_guide(design, run_in_turn));
+    }
+    REQUIRE(made[0].tubes.size() == 6);
+    for (std::size_t n = 0; n < 4; ++n) {
+        INFO("tube " << n);
+        const double finest = made[3].tubes[n].distance;
+        CHECK(finest > 0.3 * mm);
+        CHECK(finest < 12.0 * mm);
+        for (const MadeGuide& guide : made)
+            CHECK(guide.tubes[n].distance / mm == Approx(finest / mm).margin(tube_tolerance / mm));
+        // The finest mesh has a distance of its own, which is at most as far within the solid as its triangles are.
+        const geometry::TriangleTree tree(made[3].surface);
+        double least = infinity;
+        const Tube& t = design.tubes[n];
+        for (int k = 0; k <= 4000; ++k)
+            least = std::min(least, tree.nearest(glm::mix(t.points.front(), t.points.back(), k / 4000.0), least).distance);
+        CHECK((least - t.radius) / mm == Approx(finest / mm).margin(0.02));
+    }
+    CHECK(made[0].tubes[4].distance == max_tube_distance);
+    CHECK(made[0].tubes[5].distance < -1.0 * mm);
+}

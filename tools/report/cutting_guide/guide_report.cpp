@@ -98,6 +98,16 @@ const Fields<cutting_guide::MadeHole>& hole_fields() {
     return all;
 }
 
+const Fields<analysis::NearVessel>& vessel_fields() {
+    using V = analysis::NearVessel;
+    static const Fields<V> all = Fields<V>("vessel or perforator near a guide")
+                                     .text("name", "vessel", &V::name)
+                                     .number("distance_mm", "from the guide", from_si(2, "mm"), &V::away)
+                                     .vector("at_mm", "", from_si(2, "mm"), &V::at)
+                                     .flag("perforator", "", &V::is_perforator);
+    return all;
+}
+
 const Fields<analysis::GuideWarning>& guide_warning_fields() {
     using W = analysis::GuideWarning;
     static const Fields<W> all = Fields<W>("warning of a guide").text("code", "", &W::code).text("text", "", &W::text);
@@ -238,6 +248,7 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
             .child("seating", "", seating_fields(), [](const G& g) -> const G& { return g; })
             .rows("slots", "slots", slot_fields(), slots_of)
             .rows("holes", "holes", hole_fields(), [](const G& g) -> const auto& { return g.made.holes; })
+            .rows("vessels", "vessels", vessel_fields(), &G::vessels)
             .number("play_deg", "", from_si(1, "°"), greatest_play)
             .child("seat_play", "", seat_play_fields(), [](const G& g) -> const G& { return g; })
             .text("", "play on the bone, root mean square",

@@ -115,6 +115,18 @@ TEST_CASE("a guide through a vessel is refused, and one with close slots is made
     CHECK_THAT(through.err, ContainsSubstring("overlaps"));
     CHECK_THAT(through.err, ContainsSubstring("vessel 'artery'"));
     CHECK(!std::filesystem::exists(file("guide.stl")));
+    // Neither the distance nor the verdict depends on the voxel.
+    std::vector<double> distances;
+    for (const char* voxel : {"--turn 10 --json --voxel 0.37", "--turn 10 --json"}) {
+        const test::Outcome beside = guide(voxel);
+        INFO(beside.err);
+        REQUIRE(beside.code == 0);
+        const json vessels = json::parse(beside.out)["vessels"];
+        REQUIRE(!vessels.empty());
+        CHECK(vessels[0]["name"] == "vessel 'artery'");
+        distances.push_back(vessels[0]["distance_mm"].get<double>());
+    }
+    CHECK(distances[0] == Approx(distances[1]).margin(0.02));
     const test::Outcome made = guide("--printer fdm --blade 0.6");
     INFO(made.err);
     REQUIRE(made.code == 0);
