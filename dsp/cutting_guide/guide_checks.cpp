@@ -113,7 +113,7 @@ Walls walls_of(const geometry::TriangleSurface& surface, const geometry::Triangl
                const std::function<bool(const Vec3&)>& counts, const RunJobs& run) {
     struct Part {
         std::vector<ThinWall> thin, thicker;  // thicker: the thinnest of those that are not thin
-        std::vector<Vec3> thin_at, balls;  // middles of the facets of `thin`; see Walls
+        std::vector<Vec3> balls;  // see Walls
     };
     // Balls begin at `widest`, or at the thinnest walls that their job has found.
     const auto measure = [&](Part& part, const Facet& f, double widest) {
@@ -125,7 +125,7 @@ Walls walls_of(const geometry::TriangleSurface& surface, const geometry::Triangl
             part.balls.push_back(middle_of(f, 0.5 * limit));
             if (ball.is_bounded) keep_thinnest(part.thicker, wall);
         } else if (ball.is_bounded) {
-            part.thin.push_back(wall), part.thin_at.push_back(f.middle);
+            part.thin.push_back(wall);
         }
     };
     const auto run_parts = [&](int jobs, const auto& of_job) {
@@ -154,10 +154,10 @@ Walls walls_of(const geometry::TriangleSurface& surface, const geometry::Triangl
     std::vector<ThinWall> thinnest = thicker_of(parts);
     if (std::ranges::any_of(parts, [](const Part& part) { return !part.thin.empty(); })) {
         for (const Part& part : parts) walls.balls.insert(walls.balls.end(), part.balls.begin(), part.balls.end());
-        const NearPoints near(walls.balls, 0.5 * limit + wall_slack);
+        const NearPoints near(walls.balls, 0.5 * limit);
         for (const Part& part : parts)
-            for (std::size_t n = 0; n < part.thin.size(); ++n)
-                if (!near.is_any_near(part.thin_at[n])) walls.thin.push_back(part.thin[n]);
+            for (const ThinWall& wall : part.thin)
+                if (!near.is_any_near(wall.at)) walls.thin.push_back(wall);
         if (walls.thin.empty()) walls.balls.clear();
         for (const ThinWall& wall : walls.thin) keep_thinnest(thinnest, wall);
     }

@@ -35,7 +35,8 @@ struct Walls {
 /// thinnest wall and all thin ones, while most balls need one query.
 ///
 /// Where a wall ends with a round edge, balls become smaller towards the edge until the faces differ by 150°. This is no
-/// thin wall: a triangle that stands out by at most wall_slack from the balls as wide as `limit` does not count.
+/// thin wall: a ball whose middle lies within a ball as wide as `limit` does not count. So a wall that ends as a wedge of
+/// `angle` may be missed as far as its end is thinner by less than limit sin(angle / 2): by 0.1 mm at 6°.
 /// Triangles for which `counts` is false are not measured. `tree` is of `surface`. m.
 Walls walls_of(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree, double limit,
                const std::function<bool(const Vec3&)>& counts, const RunJobs& run);

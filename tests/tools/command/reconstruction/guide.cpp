@@ -107,8 +107,9 @@ TEST_CASE("a guide through a vessel is refused, and one with close slots is made
     const auto file = [&](const char* name) { return (folder.path / name).string(); };
     REQUIRE(folder.tactus("flap -o " + file("flap")).code == 0);
     REQUIRE(folder.tactus("plan reconstruct " + file("case.plan.json") + " " + file("flap/INPUTS.json")).code == 0);
-    const auto guide = [&](const std::string& more) {
-        return folder.tactus("plan guide " + file("case.plan.json") + " -o " + file("guide.stl") + " --voxel 0.5 " + more);
+    const auto guide = [&](const std::string& more, const char* voxel = "0.5") {
+        return folder.tactus("plan guide " + file("case.plan.json") + " -o " + file("guide.stl") + " --voxel " + voxel +
+                             " " + more);
     };
     const test::Outcome through = guide("--turn -60");
     CHECK(through.code == 2);
@@ -117,8 +118,8 @@ TEST_CASE("a guide through a vessel is refused, and one with close slots is made
     CHECK(!std::filesystem::exists(file("guide.stl")));
     // Neither the distance nor the verdict depends on the voxel.
     std::vector<double> distances;
-    for (const char* voxel : {"--turn 10 --json --voxel 0.37", "--turn 10 --json"}) {
-        const test::Outcome beside = guide(voxel);
+    for (const char* voxel : {"0.37", "0.5"}) {
+        const test::Outcome beside = guide("--turn 10 --json", voxel);
         INFO(beside.err);
         REQUIRE(beside.code == 0);
         const json vessels = json::parse(beside.out)["vessels"];
