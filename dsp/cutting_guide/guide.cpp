@@ -6,6 +6,7 @@
 #include "dsp/cutting_guide/guide_checks.hpp"
 #include "dsp/cutting_guide/guide_solid.hpp"
 #include "dsp/cutting_guide/thin_parts.hpp"
+#include "dsp/geometry/closest_point.hpp"
 #include "dsp/geometry/surface_volume.hpp"
 
 #include <fmt/format.h>
@@ -166,7 +167,7 @@ private:
             on_guide = nearest_on(solid, at, on_guide);
             const Vec3 before = at;
             for (std::size_t n = piece > 0 ? piece - 1 : 0; n < std::min(piece + 2, line.size() - 1); ++n)
-                if (const Vec3 q = closest_on_line(on_guide, line[n], line[n + 1]);
+                if (const Vec3 q = geometry::closest_on_segment(on_guide, line[n], line[n + 1]);
                     glm::length(q - on_guide) < glm::length(at - on_guide))
                     at = q;
             least = glm::length(at - on_guide);
@@ -190,12 +191,6 @@ private:
             found = next;
         }
         return found;
-    }
-
-    static Vec3 closest_on_line(const Vec3& p, const Vec3& a, const Vec3& b) {
-        const Vec3 along = b - a;
-        const double length2 = glm::dot(along, along);
-        return length2 > 0.0 ? a + std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) * along : a;
     }
 
     void note_trimmed(const std::vector<bool>& is_trimmed_at, double loose_volume) {

@@ -11,12 +11,29 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace tactus::cutting_guide {
 
 namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::infinity();
+
+/// The closest point of a sample. For the next sample it is a point on the surface that is nearly the closest, which bounds
+/// the search better than the distance of the samples from each other does.
+struct Closest {
+    Vec3 point{0.0};
+    bool is_known = false;
+
+    /// The distance from `p`, if it is less than `within`; else infinite.
+    double find(const geometry::TriangleTree& tree, const Vec3& p, double within) {
+        const auto near =
+            tree.nearest(p, is_known ? std::min(within, 1.000001 * glm::length(p - point) + 1e-12) : within);
+        is_known = std::isfinite(near.distance);
+        if (is_known) point = near.point;
+        return near.distance;
+    }
+};
 
 /// Of the parts that share vertices, the one with the triangle nearest to `at`.
 void keep_part_near(geometry::TriangleSurface& surface, const Vec3& at) {
@@ -55,25 +72,23 @@ SeatedBone::SeatedBone(const geometry::TriangleSurface& bone, const geometry::Tr
     top_.assign(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]), nowhere);
     raise(bone);
     run(grid.size[1], [&](int j) {
-        double at_top = infinity;  // distance of the highest sample of the column before
+        Closest at_top;  // of the highest sample of the column before
         for (int i = 0; i < grid.size[0]; ++i) {
             const double top_here = top_[column(i, j)];
-            double least = cap, bound = at_top + 1.001 * spacing;
-            at_top = infinity;
+            double least = cap;
+            Closest closest = std::exchange(at_top, {});
             for (int k = grid.size[2] - 1; k >= 0; --k) {
                 // Two samples below the surface are enough to find its place between samples.
                 const Vec3 p = grid.position(i, j, k);
                 if (p.z < top_here - 2.0 * spacing) {
                     least = std::min(least, -spacing);
                 } else {
-                    // The distance of a sample beside bounds that of this one, and shortens the search.
-                    const double away = tree.nearest(p, bound).distance;
-                    if (k == grid.size[2] - 1) at_top = away;
-                    bound = away + 1.001 * spacing;
+                    const double away = closest.find(tree, p, infinity);
+                    if (k == grid.size[2] - 1) at_top = closest;
                     least = std::min(least, p.z < top_here ? -away : away);
                     // None of these samples can come nearer than the cap.
                     for (int skip = static_cast<int>((away - cap) / spacing); skip > 0 && k > 0; --skip)
-                        grid.at(i, j, k--) = static_cast<float>(least), bound += 1.001 * spacing;
+                        grid.at(i, j, k--) = static_cast<float>(least);
                 }
                 grid.at(i, j, k) = static_cast<float>(least);
             }
@@ -135,15 +150,12 @@ Patch SeatedBone::patch_of(const std::function<bool(const Vec3&, const Vec3&)>& 
                    grid.at(i, row, k) <= static_cast<float>(-spacing);
         };
         for (int k = 0; k < grid.size[2]; ++k) {
-            double bound = cap_;
+            Closest closest;
             for (int i = 0; i < grid.size[0]; ++i) {
                 const bool is_needed = grid.at(i, j, k) < static_cast<float>(cap_) &&
                                        !(is_deep(i, j, k) && is_deep(i - 1, j, k) && is_deep(i + 1, j, k) &&
                                          is_deep(i, j - 1, k) && is_deep(i, j + 1, k));
-                const double away =
-                    is_needed ? std::min(cap_, tree.nearest(grid.position(i, j, k), bound).distance) : cap_;
-                // The distance of this sample bounds that of the next one.
-                bound = is_needed ? std::min(cap_, away + 1.001 * spacing) : cap_;
+                const double away = is_needed ? std::min(cap_, closest.find(tree, grid.position(i, j, k), cap_)) : cap_;
                 found.distance.grid.at(i, j, k) = static_cast<float>(away);
             }
         }
