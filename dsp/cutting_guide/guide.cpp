@@ -198,9 +198,10 @@ private:
         for (std::size_t n = 0; n < slots_.size(); ++n)
             if (is_trimmed_at[n]) letters += fmt::format("{}{}", letters.empty() ? "" : ", ", design_.cuts[n].letter);
         if (!letters.empty())
-            made_.notes.push_back(fmt::format("parts thinner than {:.1f} mm near slot {} are left out: {:.1f} % of the "
-                                              "guide's volume",
-                                              set_.min_thickness() / mm, letters, 100.0 * made_.thin_share));
+            made_.notes.push_back(
+                fmt::format("parts thinner than {:.1f} mm near slot {} are left out: {:.1f} % of the "
+                            "guide's volume",
+                            set_.min_thickness() / mm, letters, 100.0 * made_.thin_share));
         if (made_.loose_parts > 0)
             made_.notes.push_back(fmt::format("{} loose part{} of {:.0f} mm³ in all {} dropped", made_.loose_parts,
                                               made_.loose_parts == 1 ? "" : "s", loose_volume * 1e9,
@@ -215,10 +216,11 @@ private:
             if (slot.sides == Sides::one) continue;
             const SlotFit fit = refit_slot(placed, slot);
             if (fit.other_area >= set_.min_wall_share * slot.area()) continue;
-            made_.notes.push_back(fmt::format(
-                "of the second wall of slot {} {:.0f} % are left, less than {:.0f} %: the blade is held on the kept side "
-                "only",
-                slot.cut.letter, 100.0 * fit.other_area / slot.area(), 100.0 * set_.min_wall_share));
+            made_.notes.push_back(
+                fmt::format("of the second wall of slot {} {:.0f} % are left, less than {:.0f} %: the blade is held on "
+                            "the kept side "
+                            "only",
+                            slot.cut.letter, 100.0 * fit.other_area / slot.area(), 100.0 * set_.min_wall_share));
             slot.sides = Sides::one, slot.play.reset();
         }
     }
@@ -496,8 +498,7 @@ private:
             note_slot(n);
         }
         slot_cuts_ = solid.cuts;
-        for (const GuideHole& hole : design_.holes)
-            place_hole(solid, bone, hole, 0, "the guide does not surround it");
+        for (const GuideHole& hole : design_.holes) place_hole(solid, bone, hole, 0, "the guide does not surround it");
     }
 
     /// Negative where the plane of `a`, moved out by `out`, has passed that of `b`, at any x. With the width of its slot:

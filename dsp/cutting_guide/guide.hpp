@@ -31,14 +31,14 @@ enum class Sides {
 /// Sizes in m. BoneReconstructionPlanner's values unless noted.
 struct GuideSettings {
     double thickness = 4e-3;      ///< of the base
-    double wrap = 120.0 * degree;      ///< rad: the base reaches half of it to either side of the direction of removal
-    double offset = 0.3e-3;       ///< between base and bone; 0.5e-3 over periosteum
-    double blade = 0.4e-3;        ///< thickness that the blade cuts; a placeholder
-    double clearance = 0.25e-3;   ///< per side of the blade: 0.25e-3 for SLA, 0.4e-3 for FDM
+    double wrap = 120.0 * degree;  ///< rad: the base reaches half of it to either side of the direction of removal
+    double offset = 0.3e-3;  ///< between base and bone; 0.5e-3 over periosteum
+    double blade = 0.4e-3;  ///< thickness that the blade cuts; a placeholder
+    double clearance = 0.25e-3;  ///< per side of the blade: 0.25e-3 for SLA, 0.4e-3 for FDM
     Sides sides = Sides::three;
-    double depth = 15e-3;         ///< of a slot above the highest bone in it
-    double wall = 3e-3;           ///< of a slot
-    double beyond = 2e-3;         ///< of a slot, beyond the bone at either end; a placeholder
+    double depth = 15e-3;  ///< of a slot above the highest bone in it
+    double wall = 3e-3;  ///< of a slot
+    double beyond = 2e-3;  ///< of a slot, beyond the bone at either end; a placeholder
     double cover = 1.0;  ///< share of the bone across a slot that its walls cover, from the rail on; 1: and `beyond`
     double end = 14e-3;  ///< length of base beyond the outermost cuts; a placeholder
     double screw_radius = 1.5e-3;
@@ -80,7 +80,7 @@ struct GuideHole {
 };
 
 struct MadeHole : GuideHole {
-    Vec3 middle{0.0};   ///< m: on its axis, in the middle of the base
+    Vec3 middle{0.0};  ///< m: on its axis, in the middle of the base
     double wall = 0.0;  ///< m: the thinnest around it at half the thickness of the base, from the mesh (see hole_wall)
 };
 
@@ -141,7 +141,7 @@ struct MadeText {
 /// A wall at one of its triangles.
 struct ThinWall {
     double thickness = 0.0;  ///< m
-    Vec3 at{0.0};            ///< the middle of the wall
+    Vec3 at{0.0};  ///< the middle of the wall
 };
 
 struct MadeGuide {
@@ -151,7 +151,8 @@ struct MadeGuide {
     std::vector<MadeHole> holes;  ///< those that the guide surrounds by a wall that is not too thin
     std::vector<MadeText> texts;
     std::vector<TubeDistance> tubes;  ///< of each tube of the design
-    std::optional<ThinWall> wall;  ///< the thinnest, see walls_of; text does not count; none: none below max_measured_wall
+    std::optional<ThinWall>
+        wall;  ///< the thinnest, see walls_of; text does not count; none: none below max_measured_wall
     double thin_volume = 0.0;  ///< m³ left out as thinner than GuideSettings::min_thickness, with the loose parts
     double thin_share = 0.0;  ///< of the volume of the guide before that
     std::size_t loose_parts = 0;  ///< that came off, and were dropped; part of thin_volume

@@ -65,8 +65,8 @@ Ball ball_at(const geometry::TriangleTree& tree, const Facet& f, double max_radi
         if (!(along > 1e-9)) return {};  // the triangle itself or one beside it
         radius = 0.5 * glm::dot(to, to) / along;
     }
-    const bool is_opposite = std::isfinite(near.distance) && near.normal != Vec3(0.0) &&
-                             !(glm::dot(near.normal, f.normal) > opposite);
+    const bool is_opposite =
+        std::isfinite(near.distance) && near.normal != Vec3(0.0) && !(glm::dot(near.normal, f.normal) > opposite);
     return {radius, is_opposite};
 }
 

@@ -14,11 +14,11 @@ struct GuideChoice;
 /// code alone.
 struct GuideLimit {
     std::string_view option;  ///< "--max-play"
-    std::string_view key;     ///< of JSON: "max_play_mm"; of a share, whose unit is %: "min_contact_share"
-    std::string_view about;   ///< what it is, and whether it refuses or warns
-    std::string_view unit;    ///< "mm", "°" or "%"
-    double si;                ///< of one unit
-    double low, high;         ///< what the option accepts, in the unit
+    std::string_view key;  ///< of JSON: "max_play_mm"; of a share, whose unit is %: "min_contact_share"
+    std::string_view about;  ///< what it is, and whether it refuses or warns
+    std::string_view unit;  ///< "mm", "°" or "%"
+    double si;  ///< of one unit
+    double low, high;  ///< what the option accepts, in the unit
     std::string_view source;
     double& (*in)(GuideChoice&);  ///< SI
 

@@ -228,7 +228,8 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
 std::vector<cutting_guide::Tube> tubes_of(const reconstruction::Flap& flap, const GuideChoice& choice) {
     std::vector<cutting_guide::Tube> tubes;
     for (const reconstruction::FlapVessel& vessel : flap.vessels) tubes.push_back({vessel.points, vessel.radius});
-    for (const reconstruction::Perforator& p : flap.perforators) tubes.push_back({{p.at}, choice.limits.perforator_radius});
+    for (const reconstruction::Perforator& p : flap.perforators)
+        tubes.push_back({{p.at}, choice.limits.perforator_radius});
     return tubes;
 }
 
@@ -268,9 +269,7 @@ std::string near_slot(const PlannedGuide& guide, const Vec3& p) {
     return fmt::format("near slot {} ({})", cut.letter, cut.name);
 }
 
-std::string place_of(const Vec3& p) {
-    return fmt::format("{:.1f}, {:.1f}, {:.1f} mm", p.x / mm, p.y / mm, p.z / mm);
-}
+std::string place_of(const Vec3& p) { return fmt::format("{:.1f}, {:.1f}, {:.1f} mm", p.x / mm, p.y / mm, p.z / mm); }
 
 /// "touches vessel 'artery'". An overlap that would print as 0.00 mm is a touch.
 std::string meeting_of(const NearVessel& v) {
@@ -313,7 +312,7 @@ void warn_clinically(PlannedGuide& guide) {
                 warn("hole-near-cut", fmt::format("{} lies {:.1f} mm from cut {}", hole.name, *away / mm, cut.letter));
     for (const NearVessel& v : guide.vessels)
         warn(v.is_perforator ? "perforator" : "vessel",
-             fmt::format("{} runs {:.1f} mm from the guide, less than {:.1f} mm (a placeholder)", v.name, v.away / mm,
+             fmt::format("{} runs {:.2f} mm from the guide, less than {:.1f} mm (a placeholder)", v.name, v.away / mm,
                          (v.is_perforator ? limits.perforator : limits.vessel) / mm));
 }
 
@@ -350,9 +349,10 @@ void refuse_guide(const PlannedGuide& guide) {
                                 topology.boundary_edges, topology.non_manifold_edges, topology.flipped_edges));
     if (!(guide.volume > 0.0)) throw Error("the guide's mesh is inside out");
     if (topology.components != 1)
-        throw Error(fmt::format("the guide falls into {} parts: another approach (--turn), a wider base (--wrap), "
-                                "three sides (--sides 3) or one guide per cut of a jaw (--cut) may join them",
-                                topology.components));
+        throw Error(
+            fmt::format("the guide falls into {} parts: another approach (--turn), a wider base (--wrap), "
+                        "three sides (--sides 3) or one guide per cut of a jaw (--cut) may join them",
+                        topology.components));
     if (guide.intersections > 0)
         throw Error(fmt::format("the guide's mesh intersects itself in {} places", guide.intersections));
     const cutting_guide::GuideSettings& set = guide.design.settings;
@@ -360,14 +360,16 @@ void refuse_guide(const PlannedGuide& guide) {
     if (guide.made.wall && guide.made.wall->thickness < wanted) {
         throw Error(fmt::format(
             "a wall {} is {:.2f} mm thick, less than {:.1f} mm (the thinnest part to print, {:.1f} mm, a placeholder, "
-            "less {:.1f} mm), at {}: more space between the segments ('between_space_mm' of the inputs), a narrower slot "
+            "less {:.1f} mm), at {}: more space between the segments ('between_space_mm' of the inputs), a narrower "
+            "slot "
             "(--blade, --clearance), three sides (--sides 3) or another approach (--turn) may leave more of it",
-            near_slot(guide, guide.made.wall->at), guide.made.wall->thickness / mm, wanted / mm, set.min_thickness() / mm,
-            cutting_guide::wall_slack / mm, place_of(guide.made.wall->at)));
+            near_slot(guide, guide.made.wall->at), guide.made.wall->thickness / mm, wanted / mm,
+            set.min_thickness() / mm, cutting_guide::wall_slack / mm, place_of(guide.made.wall->at)));
     }
     if (guide.made.thin_share > guide.choice.limits.max_thin_share)
         throw Error(fmt::format(
-            "{:.1f} % of the guide's volume are left out as thinner than {:.1f} mm, more than {:.0f} % (a placeholder): a "
+            "{:.1f} % of the guide's volume are left out as thinner than {:.1f} mm, more than {:.0f} % (a "
+            "placeholder): a "
             "thicker base (--thickness), thicker walls of the slots (--wall), more space between the segments "
             "('between_space_mm' of the inputs) or a lower least wall (--min-wall) keep more of it",
             100.0 * guide.made.thin_share, set.min_thickness() / mm, 100.0 * guide.choice.limits.max_thin_share));
@@ -376,9 +378,10 @@ void refuse_guide(const PlannedGuide& guide) {
                                 near_slot(guide, guide.seat.blocked_at), place_of(guide.seat.blocked_at)));
     }
     if (guide.seat.min_distance < set.offset - 0.1 * mm)
-        throw Error(fmt::format("the guide comes within {:.2f} mm of the bone, closer than its offset of {:.2f} mm: a "
-                                "finer grid (--voxel) may mend that",
-                                guide.seat.min_distance / mm, set.offset / mm));
+        throw Error(
+            fmt::format("the guide comes within {:.2f} mm of the bone, closer than its offset of {:.2f} mm: a "
+                        "finer grid (--voxel) may mend that",
+                        guide.seat.min_distance / mm, set.offset / mm));
     if (!(guide.seat.contact_area > 0.0))
         throw Error("the guide does not touch the bone: choose another approach (--turn) or a wider base (--wrap)");
     for (const NearVessel& v : guide.vessels) {
@@ -403,9 +406,10 @@ void refuse_guide(const PlannedGuide& guide) {
                 "slot (--depth), or another approach (--turn) leaves more",
                 slot.cut.letter, slot.cut.name, 100.0 * share, 100.0 * set.min_wall_share));
         if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
-            throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan, more than 0.05 mm or 0.1°: a finer "
-                                    "grid (--voxel) or another approach (--turn) may mend that",
-                                    guide.made.slots[n].cut.letter, fit.offset / mm, fit.angle / degree));
+            throw Error(
+                fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan, more than 0.05 mm or 0.1°: a finer "
+                            "grid (--voxel) or another approach (--turn) may mend that",
+                            guide.made.slots[n].cut.letter, fit.offset / mm, fit.angle / degree));
         if (guide.made.slots[n].sides != cutting_guide::Sides::one && !(fit.width > 0.0))
             throw Error(fmt::format("slot {} lacks its second wall", guide.made.slots[n].cut.letter));
         if (fit.width > 0.0 && std::abs(fit.width - guide.made.slots[n].width) > 0.05 * mm)
@@ -428,9 +432,11 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
     guide.topology = mesh::topology_of(surface);
     guide.intersections = geometry::self_intersections(surface, 100, run).size();
     guide.volume = mesh::volume_of(surface);
-    guide.seat = cutting_guide::seat_of(surface, bone, glm::normalize(guide.design.removal),
-                                        guide.design.settings.offset, choice.limits.seat_gap, choice.limits.free_path, run);
-    guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.limits.overhang);
+    guide.seat =
+        cutting_guide::seat_of(surface, bone, glm::normalize(guide.design.removal), guide.design.settings.offset,
+                               choice.limits.seat_gap, choice.limits.free_path, run);
+    guide.overhang =
+        cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.limits.overhang);
     for (const cutting_guide::MadeSlot& slot : guide.made.slots)
         guide.refits.push_back(cutting_guide::refit_slot(surface, slot));
     if (guide.bone == GuideBone::fibula) guide.vessels = vessels_near(guide, tree, study.flap(), choice);

@@ -184,9 +184,9 @@ std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
         {"depth of a slot", in_mm(set.depth), from(set.depth, usual.depth, planner)},
         {"wall of a slot", in_mm(set.wall), from(set.wall, usual.wall, planner)},
         {"blade", in_mm(set.blade),
-         !is(set.blade, g.kerf)         ? "given"
-         : is(g.kerf, inputs.kerf)      ? "the plan's kerf, a placeholder"
-                                        : "the plan's kerf"},
+         !is(set.blade, g.kerf)    ? "given"
+         : is(g.kerf, inputs.kerf) ? "the plan's kerf, a placeholder"
+                                   : "the plan's kerf"},
         {"clearance per side of the blade", in_mm(set.clearance),
          is(set.clearance, usual.clearance) ? "of a printer by light (sla)"
                                             : from(set.clearance, 0.4 * mm, "of a printer by filament (fdm)")},
@@ -200,7 +200,8 @@ std::vector<SourcedValue> limits_of(const analysis::PlannedGuide& g) {
     const analysis::GuideChoice usual;
     for (const analysis::GuideLimit& limit : analysis::guide_limits()) {
         const bool is_usual = std::abs(limit.of(g.choice) - limit.of(usual)) < 1e-6 * limit.si;
-        all.push_back({std::string(limit.about), limit.text_of(g.choice), std::string(is_usual ? limit.source : "given")});
+        all.push_back(
+            {std::string(limit.about), limit.text_of(g.choice), std::string(is_usual ? limit.source : "given")});
     }
     return all;
 }
@@ -259,8 +260,8 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
                   })
             .number("contact_share", "faces on the bone that touch it", fixed(0, "%", "1"),
                     [](const G& g) { return g.seat.contact_share(); })
-            .number("overhang_share", "surface that hangs over when printed with the bone's side up", fixed(0, "%", "1"),
-                    &G::overhang)
+            .number("overhang_share", "surface that hangs over when printed with the bone's side up",
+                    fixed(0, "%", "1"), &G::overhang)
             .rows("", "sizes", sourced_fields(), sizes_of)
             .rows("", "limits", sourced_fields(), limits_of)
             .child("limits", "", limit_fields(), [](const G& g) -> const auto& { return g.choice; })
