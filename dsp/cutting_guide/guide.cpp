@@ -31,7 +31,8 @@ constexpr double crumb = 8e-9;  // m³: smaller parts fall off and are removed
 constexpr double loose = 500e-9;  // m³: smaller parts may come off when thin ones are left out
 constexpr double max_samples = 150e6;
 constexpr std::size_t max_rounds = 3;  // of leaving out what is thin
-// m: of the grid of the bone. Neither this nor its origin depends on the voxel, so that a coarser mesh is one of the same solid.
+// m: of the grid of the bone. Neither this nor its origin depends on the voxel, so that a coarser mesh is one of the
+// same solid.
 constexpr double bone_spacing = 0.5 * mm;
 constexpr int slide_steps = 8;  // of a hole
 
@@ -141,9 +142,10 @@ private:
         }
     }
 
-    /// The mesh finds the place: that of the points along the tube, 0.25 mm apart, which is nearest to the guide or deepest
-    /// in it. Outside of the guide, the nearest points on the solid and on the line of the tube are then sought in turn, so
-    /// that the distance does not depend on the mesh: its triangles are up to voxel² / 8 / radius within round faces.
+    /// The mesh finds the place: that of the points along the tube, 0.25 mm apart, which is nearest to the guide or
+    /// deepest in it. Outside of the guide, the nearest points on the solid and on the line of the tube are then sought
+    /// in turn, so that the distance does not depend on the mesh: its triangles are up to voxel² / 8 / radius within
+    /// round faces.
     TubeDistance distance_to(const Tube& tube, const GuideSolid& solid, const geometry::TriangleTree& tree) const {
         constexpr double step = 0.25 * mm;
         std::vector<Vec3> line;
@@ -176,8 +178,8 @@ private:
         return {std::min(least - tube.radius, max_tube_distance), made_.frame.apply(at)};
     }
 
-    /// The point on the surface of the solid nearest to `p`, from `start` near it: steps along the surface towards `p`, each
-    /// led back onto the surface by the normal, while they come nearer.
+    /// The point on the surface of the solid nearest to `p`, from `start` near it: steps along the surface towards `p`,
+    /// each led back onto the surface by the normal, while they come nearer.
     static Vec3 nearest_on(const GuideSolid& solid, const Vec3& p, const Vec3& start) {
         const auto onto = [&](Vec3 q) {
             for (int n = 0; n < 4; ++n) q -= solid.value(q) * solid.normal(q);
@@ -590,7 +592,8 @@ private:
         return middle;
     }
 
-    /// Makes a hole at the first place of its slide, from `step` on, where the guide surrounds it; without one it is left out.
+    /// Makes a hole at the first place of its slide, from `step` on, where the guide surrounds it; without one it is
+    /// left out.
     void place_hole(GuideSolid& solid, const SeatedBone& bone, const GuideHole& hole, int step, const char* reason) {
         const Vec3 axis = to_guide_.rotate(hole.axis);
         const int last = hole.slide == Vec3(0.0) ? 0 : slide_steps;
@@ -612,9 +615,9 @@ private:
         made_.notes.push_back(fmt::format("{}: {}, and has no hole for it", hole.name, reason));
     }
 
-    /// Measures the walls around the holes in the mesh, of which `tree` is. A hole whose wall is too thin, because what was
-    /// beside it is left out, moves on along its slide or is left out. Returns false if there was one: the mesh is then
-    /// out of date.
+    /// Measures the walls around the holes in the mesh, of which `tree` is. A hole whose wall is too thin, because what
+    /// was beside it is left out, moves on along its slide or is left out. Returns false if there was one: the mesh is
+    /// then out of date.
     bool check_holes(GuideSolid& solid, const SeatedBone& bone, const geometry::TriangleTree& tree, double limit) {
         std::vector<PlacedHole> failed;
         for (PlacedHole& hole : holes_) {

@@ -151,8 +151,7 @@ struct MadeGuide {
     std::vector<MadeHole> holes;  ///< those that the guide surrounds by a wall that is not too thin
     std::vector<MadeText> texts;
     std::vector<TubeDistance> tubes;  ///< of each tube of the design
-    std::optional<ThinWall>
-        wall;  ///< the thinnest, see walls_of; text does not count; none: none below max_measured_wall
+    std::optional<ThinWall> wall;  ///< the thinnest, except of text; none: no wall is below max_measured_wall
     double thin_volume = 0.0;  ///< m³ left out as thinner than GuideSettings::min_thickness, with the loose parts
     double thin_share = 0.0;  ///< of the volume of the guide before that
     std::size_t loose_parts = 0;  ///< that came off, and were dropped; part of thin_volume
@@ -164,19 +163,19 @@ struct MadeGuide {
 /// round edges, since planes through its shell would leave feather edges on a flat bone. Each cut has a
 /// block with a slot whose wall on the kept side lies on the plane: a blade that is held against it cuts on plan, one at
 /// the other wall leaves bone. A rail beside the bone joins the blocks, and bears the text. All is united and
-/// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. What is thinner than
-/// min_thickness is left out, and stated in `thin_share`: strips between two slots, which have notes of their own, do not
-/// count there. Throws Error for
-/// planes through which no blade can come along the removal (more than max_lean between them), for bone that stands in the
-/// way of the rail, for guides that need more than 150 million samples and numbers that cannot be.
+/// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. What is thinner
+/// than min_thickness is left out, and stated in `thin_share`: strips between two slots, which have notes of their own,
+/// do not count there. Throws Error for planes through which no blade can come along the removal (more than max_lean
+/// between them), for bone that stands in the way of the rail, for guides that need more than 150 million samples and
+/// numbers that cannot be.
 MadeGuide make_guide(const GuideDesign& design, const RunJobs& run);
 
 /// Measured walls may be thinner than they should be by this much, m.
 inline constexpr double wall_slack = 0.1e-3;
 
-/// The index of the slot whose wall on the kept side is nearest to `p` (frame of the bone); there must be one. Distances
-/// to the walls, not to their planes: the planes of two cuts cross, so that beyond the crossing the nearer plane is that
-/// of the farther slot.
+/// The index of the slot whose wall on the kept side is nearest to `p` (frame of the bone); there must be one.
+/// Distances to the walls, not to their planes: the planes of two cuts cross, so that beyond the crossing the nearer
+/// plane is that of the farther slot.
 std::size_t nearest_slot(std::span<const MadeSlot> slots, const Vec3& p);
 
 /// Base lines of the rows of text on the rail, m from its top: the first text, letters, the second text.

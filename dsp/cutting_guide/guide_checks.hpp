@@ -29,14 +29,14 @@ struct Walls {
 };
 
 /// The thickness of a wall at a triangle is twice the radius of the smallest ball within the solid that touches the
-/// middle of the triangle and another place whose normal differs by at least 150°: a ball at a corner touches faces that
-/// differ less. The balls shrink from a bound (Ma, Bae, Choi 2012): first at every 32nd triangle from
+/// middle of the triangle and another place whose normal differs by at least 150°: a ball at a corner touches faces
+/// that differ less. The balls shrink from a bound (Ma, Bae, Choi 2012): first at every 32nd triangle from
 /// max_measured_wall, then at all of them from the thinnest wall of these, at least `limit`. A single pass so gives the
 /// thinnest wall and all thin ones, while most balls need one query.
 ///
-/// Where a wall ends with a round edge, balls become smaller towards the edge until the faces differ by 150°. This is no
-/// thin wall: a ball whose middle lies within a ball as wide as `limit` does not count. So a wall that ends as a wedge of
-/// `angle` may be missed as far as its end is thinner by less than limit sin(angle / 2): by 0.1 mm at 6°.
+/// Where a wall ends with a round edge, balls become smaller towards the edge until the faces differ by 150°. This is
+/// no thin wall: a ball whose middle lies within a ball as wide as `limit` does not count. So a wall that ends as a
+/// wedge of `angle` may be missed as far as its end is thinner by less than limit sin(angle / 2): by 0.1 mm at 6°.
 /// Triangles for which `counts` is false are not measured. `tree` is of `surface`. m.
 Walls walls_of(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree, double limit,
                const std::function<bool(const Vec3&)>& counts, const RunJobs& run);
@@ -58,7 +58,8 @@ struct Seat {
 inline constexpr double max_play = 20e-3, max_play_angle = 0.5;  // m, rad
 
 /// Play: all motions for which contact faces move by no more than `gap` along their normals (root of the mean square, so
-/// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives max_play. m.
+/// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives
+/// max_play. m.
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
              double offset, double gap, double free_path, const RunJobs& run);
 

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::infinity();
 
-/// The closest point of a sample. For the next sample it is a point on the surface that is nearly the closest, which bounds
-/// the search better than the distance of the samples from each other does.
+/// The closest point of a sample. For the next sample it is a point on the surface that is nearly the closest, which
+/// bounds the search better than the distance of the samples from each other does.
 struct Closest {
     Vec3 point{0.0};
     bool is_known = false;

@@ -19,7 +19,8 @@ namespace tactus::cutting_guide {
 
 namespace {
 
-// m: of the grid of the opening. A field of distances at 0.95 mm is off by spacing² / 8 / 0.95 mm = 0.01 mm between samples.
+// m: of the grid of the opening. A field of distances at 0.95 mm is off by spacing² / 8 / 0.95 mm = 0.01 mm between
+// samples.
 constexpr double spacing = 0.25 * mm;
 
 volume::Grid grid_around(std::span<const ThinWall> thin, double margin) {

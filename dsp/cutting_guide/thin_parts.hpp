@@ -15,8 +15,8 @@ namespace tactus::cutting_guide {
 /// they cut off leaves another thin edge.
 ///
 /// The balls are those that `walls` found at the triangles, not samples of a grid: in a wall just as thick as `limit`
-/// balls fit at a single depth, which no sample hits. What stands out from the balls by up to three quarters of wall_slack
-/// stays, as the triangles are a sample, too. `surface` is the mesh of the solid.
+/// balls fit at a single depth, which no sample hits. What stands out from the balls by up to three quarters of
+/// wall_slack stays, as the triangles are a sample, too. `surface` is the mesh of the solid.
 Body thin_parts(const GuideSolid& solid, const geometry::TriangleTree& surface, const Walls& walls, double limit,
                 const RunJobs& run);
 

@@ -25,9 +25,9 @@ double distance2(const Vec3& p, const Vec3& low, const Vec3& high) {
     return glm::dot(d, d);
 }
 
-/// True if the plane of a triangle, and so the triangle, is farther than the square root of `distance2`. Cheaper than the
-/// closest point, and decides where the ball of a search touches a flat face. The margin exceeds rounding errors, so that
-/// no closest point changes; of slivers, whose planes are inaccurate, it is never true.
+/// True if the plane of a triangle, and so the triangle, is farther than the square root of `distance2`. Cheaper than
+/// the closest point, and decides where the ball of a search touches a flat face. The margin exceeds rounding errors,
+/// so that no closest point changes; of slivers, whose planes are inaccurate, it is never true.
 bool is_plane_beyond(const Vec3& p, const Vec3* corner, double distance2) {
     const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0], face = glm::cross(ab, ac);
     const double face2 = glm::dot(face, face), above = glm::dot(face, p - corner[0]);

@@ -10,8 +10,8 @@ namespace tactus::analysis {
 
 struct GuideChoice;
 
-/// An option of `plan guide`, a key of its results and a row of its report: one list, so that no threshold can be in the
-/// code alone.
+/// An option of `plan guide`, a key of its results and a row of its report: one list, so that no threshold can be in
+/// the code alone.
 struct GuideLimit {
     std::string_view option;  ///< "--max-play"
     std::string_view key;  ///< of JSON: "max_play_mm"; of a share, whose unit is %: "min_contact_share"

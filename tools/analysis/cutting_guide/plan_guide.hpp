@@ -80,8 +80,9 @@ cutting_guide::GuideDesign design_guide(const FlapStudy& study, const std::strin
 PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
 
 /// Throws Error for a mesh that is not closed, wound or one part, that intersects itself, has a wall thinner than it
-/// should or has lost too much that was too thin, a slot off the plan, or cannot be seated, and for one that overlaps a vessel, a perforator or a cut with a hole:
-/// such a guide must not be printed. The text names the slot, the value, the limit with its source, and what helps.
+/// should or has lost too much that was too thin, a slot off the plan, or cannot be seated, and for one that overlaps a
+/// vessel, a perforator or a cut with a hole: such a guide must not be printed. The text names the slot, the value, the
+/// limit with its source, and what helps.
 void refuse_guide(const PlannedGuide& guide);
 
 /// Both. Clinical thresholds only warn.
