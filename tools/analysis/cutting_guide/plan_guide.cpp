@@ -31,7 +31,6 @@ using cutting_guide::GuideDesign;
 using cutting_guide::GuideHole;
 using cutting_guide::GuideText;
 
-constexpr double touch = 0.05 * mm;  // a guide that is nearer to a vessel touches it
 constexpr double max_label = 16;        // characters
 
 Vec3 turned(const Vec3& v, const Vec3& axis, double angle) { return glm::angleAxis(angle, axis) * v; }
@@ -385,7 +384,7 @@ void refuse_guide(const PlannedGuide& guide) {
     if (!(guide.seat.contact_area > 0.0))
         throw Error("the guide does not touch the bone: choose another approach (--turn) or a wider base (--wrap)");
     for (const NearVessel& v : guide.vessels) {
-        if (v.away >= touch && !v.is_covered) continue;
+        if (v.away >= guide.choice.limits.touch && !v.is_covered) continue;
         throw Error(fmt::format(
             "the guide {}, at {}: another approach (--turn), a narrower base (--wrap) or segments from another part of "
             "the bone avoid it",

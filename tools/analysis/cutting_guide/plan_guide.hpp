@@ -26,6 +26,7 @@ struct GuideLimits {
     double min_contact_share = 0.5;
     double overhang = 45.0 * degree;  ///< printers hold walls that lean less
     double max_overhang_share = 0.1;
+    double touch = 0.1e-3;  ///< a guide that is nearer to a vessel or perforator is refused
     double vessel = 3e-3, perforator = 3e-3;  ///< nearer ones warn
     double perforator_radius = 0.3e-3;  ///< Heitmann 2003
     double hole_to_cut = 1e-3;

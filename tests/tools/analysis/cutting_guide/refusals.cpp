@@ -39,11 +39,16 @@ std::string refusal(const PlannedGuide& guide) {
 
 TEST_CASE("a guide that touches a vessel is not said to overlap it by 0.00 mm") {
     CHECK(refusal(flawless()) == "");
-    for (const double away : {0.04 * mm, 0.0, -0.004 * mm}) {
+    for (const double away : {0.09 * mm, 0.04 * mm, 0.0, -0.004 * mm}) {
         PlannedGuide guide = flawless();
         guide.vessels.push_back({"vessel 'artery'", away});
         CHECK_THAT(refusal(guide), ContainsSubstring("the guide touches vessel 'artery', at"));
     }
+    PlannedGuide beside = flawless();
+    beside.vessels.push_back({"vessel 'artery'", 0.11 * mm});
+    CHECK(refusal(beside) == "");
+    beside.choice.limits.touch = 0.2 * mm;
+    CHECK_THAT(refusal(beside), ContainsSubstring("touches"));
     PlannedGuide guide = flawless();
     guide.vessels.push_back({"vessel 'artery'", -0.31 * mm});
     CHECK_THAT(refusal(guide), ContainsSubstring("the guide overlaps vessel 'artery' by 0.31 mm, at"));

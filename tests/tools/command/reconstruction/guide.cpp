@@ -116,6 +116,10 @@ TEST_CASE("a guide through a vessel is refused, and one with close slots is made
     CHECK_THAT(through.err, ContainsSubstring("overlaps"));
     CHECK_THAT(through.err, ContainsSubstring("vessel 'artery'"));
     CHECK(!std::filesystem::exists(file("guide.stl")));
+    // The usual approach is 0.05 mm from the artery.
+    const test::Outcome touch = guide("");
+    CHECK(touch.code == 2);
+    CHECK_THAT(touch.err, ContainsSubstring("the guide touches vessel 'artery'"));
     // Neither the distance nor the verdict depends on the voxel.
     std::vector<double> distances;
     for (const char* voxel : {"0.37", "0.5"}) {
@@ -128,7 +132,7 @@ TEST_CASE("a guide through a vessel is refused, and one with close slots is made
         distances.push_back(vessels[0]["distance_mm"].get<double>());
     }
     CHECK(distances[0] == Approx(distances[1]).margin(0.02));
-    const test::Outcome made = guide("--printer fdm --blade 0.6");
+    const test::Outcome made = guide("--turn 10 --printer fdm --blade 0.6");
     INFO(made.err);
     REQUIRE(made.code == 0);
     CHECK_THAT(made.out, ContainsSubstring("slot B is a ledge"));

@@ -127,7 +127,7 @@ TEST_CASE("every cut of the tutorial's guide is sawn on plan", "[long]") {
     run("flap -o " + in("flap"));
     run("plan reconstruct " + in("case.plan.json") + " " + in("flap/INPUTS.json"));
     const json guide = json::parse(run("plan guide " + in("case.plan.json") + " -o " + in("guide.stl") +
-                                       " --blade 0.6 --voxel 0.5 --json --task " + in("saw.toml")));
+                                       " --turn 10 --blade 0.6 --voxel 0.5 --json --task " + in("saw.toml")));
     REQUIRE(guide["slots"].size() == 6);
     run("session " + in("saw.toml") + " --trainee P01 --offline --out " + in("training"));
     const json score = json::parse(run("score " + in("training/P01/1/01-saw") + " --json"));
