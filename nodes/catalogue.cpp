@@ -4,11 +4,16 @@
 
 #include "dsp/core/error.hpp"
 #include "graph/plugin/plugins.hpp"
+#include "nodes/declare.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <deque>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 // name of the struct, family (folder), file
@@ -165,6 +170,12 @@ namespace tactus::nodes {
 
 namespace {
 
+/// The file of a plug-in, or "Tactus".
+std::string origin_of(const NodeType& type) {
+    const plugin::Plugin* const of = plugin::plugin_of(type);
+    return of ? of->file.string() : "Tactus";
+}
+
 void add(const plugin::Plugin& plugin, std::vector<const NodeType*>& all) {
     for (const NodeType* type : plugin.types) {
         const auto known = std::ranges::find(all, type->name, &NodeType::name);
@@ -172,12 +183,9 @@ void add(const plugin::Plugin& plugin, std::vector<const NodeType*>& all) {
             all.push_back(type);
             continue;
         }
-        std::string origin = "Tactus";
-        for (const plugin::Plugin& other : plugin::all())
-            if (std::ranges::find(other.types, *known) != other.types.end()) origin = other.file.string();
         throw Error(fmt::format(
             "{}: {} has a node type '{}' already; give the struct another name, or leave out one of the two",
-            plugin.file.string(), origin, type->name));
+            plugin.file.string(), origin_of(**known), type->name));
     }
 }
 
@@ -187,18 +195,52 @@ void add(const plugin::Plugin& plugin, std::vector<const NodeType*>& all) {
 TACTUS_NODES(X)
 #undef X
 
-compile::Catalogue catalogue() {
-    static const std::vector<const NodeType*> types = [] {
-        std::vector<const NodeType*> all{
+namespace {
+
+using Types = std::vector<const NodeType*>;
+
+/// Every table that was ever current: callers may still read it.
+struct Tables {
+    std::mutex lock;
+    std::deque<Types> all;
+    std::vector<const NodeType*> declared;
+    std::atomic<const Types*> current;
+};
+
+Tables& tables() {
+    static Tables& made = []() -> Tables& {
+        Types all{
 #define X(Type, family) &node_type_##Type(),
             TACTUS_NODES(X)
 #undef X
         };
         for (const plugin::Plugin& plugin : plugin::all()) add(plugin, all);
         std::ranges::sort(all, {}, &NodeType::name);
-        return all;
+        auto& first = *new Tables;  // never destroyed: threads may outlive static objects
+        first.current = &first.all.emplace_back(std::move(all));
+        return first;
     }();
-    return types;
+    return made;
+}
+
+}  // namespace
+
+compile::Catalogue catalogue() { return *tables().current.load(std::memory_order_acquire); }
+
+void declare(const NodeType& type) {
+    Tables& known = tables();
+    const std::lock_guard hold(known.lock);
+    Types next = *known.current.load(std::memory_order_relaxed);
+    const auto at = std::ranges::lower_bound(next, type.name, {}, &NodeType::name);
+    if (at == next.end() || (*at)->name != type.name) {
+        next.insert(at, &type);
+    } else {
+        if (std::ranges::find(known.declared, *at) == known.declared.end())
+            throw Error(fmt::format("{} has a type of this name already; choose another one", origin_of(**at)));
+        *at = &type;
+    }
+    known.declared.push_back(&type);
+    known.current.store(&known.all.emplace_back(std::move(next)), std::memory_order_release);
 }
 
 }  // namespace tactus::nodes

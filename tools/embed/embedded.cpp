@@ -2,6 +2,7 @@
 #include "tools/embed/embedded.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/embed/host_node.hpp"
 #include "tools/run/load_plan.hpp"
 #include "tools/run/results.hpp"
 #include "tools/run/summary.hpp"
@@ -93,6 +94,8 @@ Run::Run(Patch& patch, RunOptions options)
         hands_.push_back(std::make_unique<HostHand>(hand.info, options_.live));
     }
     compile::Schedule plan = patch.plan(hands_, options_.seed);
+    callbacks_ = std::make_unique<CallbackFailure>([this] { engine_->stop(); });
+    admit_host_nodes(plan, options_.live, *callbacks_);
     if (options_.folder) folder_.emplace(run::OutputChoice{*options_.folder});
     run::EngineOptions engine;
     engine.seconds = options_.seconds > 0.0 ? options_.seconds : unlimited_s;
@@ -118,6 +121,17 @@ void Run::go(Way way) {
         throw Error(way_ == Way::live       ? "the run is live: it goes on by itself"
                     : way_ == Way::rendered ? "the run was rendered: start another one"
                                             : "the run is being advanced: advance it to where it is to end");
+    check_callbacks();
+}
+
+void Run::check_callbacks() {
+    if (way_ == Way::live) return;
+    try {
+        callbacks_->check();
+    } catch (const Error&) {
+        failure_ = std::current_exception();
+        throw;
+    }
 }
 
 void Run::advance(double seconds) {
@@ -127,6 +141,7 @@ void Run::advance(double seconds) {
     asked_s_ += seconds;
     now_ = std::llround(asked_s_ * static_cast<double>(flicks_per_second));
     engine_->advance(now_);
+    check_callbacks();
 }
 
 void Run::render() {
@@ -135,6 +150,7 @@ void Run::render() {
     go(Way::rendered);
     engine_->render(options_.threads > 0 ? options_.threads
                                          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+    check_callbacks();
 }
 
 void Run::run_live() {

@@ -26,6 +26,8 @@
 
 namespace tactus::embed {
 
+class CallbackFailure;
+
 /// Errors of a patch: the place and text of the first, and all of them.
 class PatchErrors : public Error {
 public:
@@ -84,7 +86,7 @@ public:
     Run(const Run&) = delete;
     Run& operator=(const Run&) = delete;
 
-    /// See tactus.h. Throw Error.
+    /// See tactus.h. Throw Error; after a callback of the program failed, always that failure.
     void advance(double seconds);
     void render();
     void set(const std::string& node_and_parameter, const std::string& value);
@@ -125,6 +127,8 @@ private:
     void run_live();
     void tend();
     void take_in(Output& output);
+    /// Throws the failure of a callback of the program's own nodes; the run is then over.
+    void check_callbacks();
 
     struct Task {
         std::function<void()> work;
@@ -137,6 +141,7 @@ private:
     std::vector<std::unique_ptr<HostHand>> hands_;
     std::optional<run::OutputFolder> folder_;
     observe::Observer observer_;
+    std::unique_ptr<CallbackFailure> callbacks_;
     std::unique_ptr<run::Engine> engine_;
     std::deque<Output> outputs_;
     Way way_ = Way::none;
@@ -150,7 +155,7 @@ private:
     std::condition_variable changed_;
     std::deque<std::shared_ptr<Task>> tasks_;
     bool is_over_ = false;
-    std::exception_ptr failure_;  // of the live run
+    std::exception_ptr failure_;  // of the live run, or of a callback
     std::thread thread_;
 };
 

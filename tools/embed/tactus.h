@@ -132,6 +132,82 @@ const char* tactus_summary(tactus_run* run);
 uint64_t tactus_hash(tactus_run* run);
 void tactus_free_run(tactus_run* run);
 
+/* Node types whose code is in this program. A patch that is loaded later names such a type as any other, and its node
+ * runs in tactus_render and tactus_advance. tactus_start refuses it for a live run, because a callback may allocate and
+ * wait; a node for live runs is written in C++ (docs/how-to/write-a-node-outside.md). Results have the same bits
+ * however time is divided into blocks, if the callback computes a frame from this frame and the ones before it. */
+
+typedef struct tactus_port {
+    const char* name; /* unique in the node: letters, digits, '_', '-' */
+    const char* type; /* its values, a row per frame:
+                       *   "signal"  one float
+                       *   "number"  one double
+                       *   "ramp"    one double: an input for numbers that a node with signals reads once per sample
+                       *   "bool"    one byte, 0 or 1
+                       *   "vector"  double x, y, z
+                       *   "pose"    double px, py, pz, qw, qx, qy, qz: m and a unit quaternion
+                       *   "twist"   double vx, vy, vz, wx, wy, wz: m/s and rad/s
+                       *   "wrench"  double fx, fy, fz, tx, ty, tz: N and N·m */
+    const char* unit;  /* of a signal, number, ramp or vector, "m/s^2"; wires between different units are refused.
+                        * NULL: none */
+    const char* about; /* one sentence, or NULL */
+    int optional;      /* 1: an input that may stay without a wire */
+} tactus_port;
+
+typedef struct tactus_parameter {
+    const char* name;
+    const char *initial, *lowest, *highest; /* quantities, "0.5 N/mm"; the unit of the first is that of the parameter */
+    const char* about;                      /* one sentence, or NULL */
+} tactus_parameter;
+
+typedef struct tactus_setup {
+    const char* name; /* of the node in the patch; valid during the call */
+    double rate;      /* frames per second, as the patch states */
+    int max_frames;   /* most frames of a block */
+    uint64_t seed;    /* for random numbers that repeat; differs from node to node */
+} tactus_setup;
+
+typedef struct tactus_rows {
+    void* values;     /* row of the first frame, within the engine's memory; NULL: an optional input without a wire */
+    ptrdiff_t stride; /* bytes from row to row; 0: all frames have this row */
+} tactus_rows;
+
+/* Frames index … index + frames − 1 of one node. Valid during the call. */
+typedef struct tactus_block {
+    int64_t index; /* since the start of the run; its logical time is index / rate, s */
+    double rate;   /* frames per second */
+    int frames;    /* 1 for a node in a group without signals */
+    const tactus_rows* inputs;  /* as declared; only to be read */
+    const tactus_rows* outputs; /* as declared. Before the call every row has the last value before this block */
+    const double* parameters;   /* as declared, SI */
+} tactus_block;
+
+typedef struct tactus_node_type {
+    size_t size;       /* sizeof(tactus_node_type) */
+    const char* name;  /* `type` in a patch: letters, digits, '_', '-' */
+    const char* about; /* one sentence, or NULL */
+    const tactus_port* inputs;
+    int input_count;
+    const tactus_port* outputs;
+    int output_count;
+    const tactus_parameter* parameters;
+    int parameter_count;
+    /* The callbacks return 0, or another number with the reason in error->text, which ends the run: tactus_start,
+     * tactus_advance or tactus_render then fails with this text and the place of the node in the patch. They must not
+     * throw C++ exceptions, nor free the run that calls them. Different nodes may be called by different threads at the
+     * same time, one node by one thread. */
+    void* context; /* valid until the program ends */
+    /* Makes the state of one node of one run, within tactus_start. NULL: the state is `context`. */
+    int (*prepare)(void* context, const tactus_setup* setup, void** state, tactus_error* error);
+    int (*process)(void* state, const tactus_block* block, tactus_error* error);
+    /* Within tactus_free_run, or when tactus_start fails. NULL: nothing to free. */
+    void (*release)(void* state);
+} tactus_node_type;
+
+/* Makes the type known to this program; texts are copied. A type of this name that was declared before is replaced, but
+ * not in runs that have begun. At most 256 names; those of Tactus and of plug-ins are refused. Any thread. */
+int tactus_declare_node(const tactus_node_type* type, tactus_error* error);
+
 /* Analyses of records in memory: `count` samples at `rate` Hz, all of them finite. Any number of threads may call them. */
 
 /* Power spectral density by Welch's method: half-overlapping Hann segments of `segment` samples (0: 0.75 s, or as long as eight

@@ -73,7 +73,7 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
         std::memset(&error, 0, sizeof(error));
         bool has_failed = false;
         double* const room = pick(5) ? values.data() : nullptr;
-        switch (pick(19)) {
+        switch (pick(20)) {
             case 0: has_failed = tactus_configure(patch, word(), told) < 0; break;
             case 1: has_failed = tactus_use_asset(patch, word(), told) < 0; break;
             case 2: has_failed = tactus_attach_hand(patch, word(), nullptr, told) < 0; break;
@@ -120,6 +120,22 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
                 tactus_exposure exposure{};
                 has_failed = tactus_hand_arm_exposure(axes.data(), static_cast<std::size_t>(pick(3000)), 1e3 * number(),
                                                       number(), pick(5) ? &exposure : nullptr, told) < 0;
+                break;
+            }
+            case 18: {
+                const tactus_port port{word(), pick(2) ? "signal" : word(), word(), word(), pick(2)};
+                const tactus_parameter parameter{word(), word(), word(), word(), word()};
+                tactus_node_type type{};
+                type.size = pick(9) ? sizeof(type) : static_cast<std::size_t>(pick(100));
+                type.name = pick(2) ? "any" : word();
+                type.inputs = pick(5) ? &port : nullptr;
+                type.input_count = pick(3) - 1;
+                type.outputs = &port;
+                type.output_count = pick(2);
+                type.parameters = &parameter;
+                type.parameter_count = pick(2);
+                if (pick(5)) type.process = [](void*, const tactus_block*, tactus_error*) { return 0; };
+                has_failed = tactus_declare_node(pick(5) ? &type : nullptr, told) < 0;
                 break;
             }
             default:

@@ -229,6 +229,232 @@ numpy.testing.assert_allclose(run["f.out"].values, numpy.sin(3.0 * run["v.signal
         self.assertIn("Rebuild", wrong.stderr)
 
 
+CLIPPED = """
+wires = ["s.signal -> clip.in", "hand.twist -> place.twist", "hand.pose -> place.pose"]
+[devices.simulated]
+driver = "scripted"
+targets = "0 s: 0 0 60 mm; 0.1 s: 10 20 50 mm"
+[nodes]
+s = { type = "sine", rate = "48 kHz" }
+clip = { type = "py_clip", rate = "48 kHz", drive = "3" }
+hand = { type = "device_input", rate = "1 kHz" }
+place = { type = "py_place", rate = "1 kHz" }
+"""
+
+
+def declare_nodes():
+    @tactus.node("py_clip", inputs={"in": "signal"}, outputs={"out": tactus.Port("signal", about="clipped")},
+                 parameters={"drive": ("1", "0", "10")})
+    def clip(block):
+        """Bends a signal
+        softly."""
+        np.tanh(np.float32(block["drive"]) * block["in"], out=block["out"])
+
+    @tactus.node("py_place", inputs={"pose": "pose", "twist": "twist"},
+                 outputs={"pose_out": "pose", "speed": tactus.Port("number", "m/s"), "at": tactus.Port("vector", "m"),
+                          "moves": "bool"})
+    class Place:
+        def process(self, block):
+            block["pose_out"] = block["pose"]
+            block["speed"] = np.linalg.norm(block["twist"][:, :3], axis=1)
+            block["at"] = block["pose"][:, :3]
+            block["moves"] = block["speed"] > 0
+
+
+class Nodes(unittest.TestCase):
+    def render(self, code, type="py_test", seconds=0.01, **ports):
+        tactus.node(type, **(ports or dict(outputs={"out": "signal"})))(code)
+        return tactus.parse(f'[nodes.a]\ntype = "{type}"\nrate = "48 kHz"\n').render(seconds)
+
+    def test_every_type_passes_as_an_array_in_si_units(self):
+        declare_nodes()
+        run = tactus.parse(CLIPPED).render(0.1)
+        np.testing.assert_array_equal(run["clip.out"]["value"],
+                                      np.tanh(np.float32(3) * run["s.signal"]["value"].astype(np.float32)))
+        np.testing.assert_array_equal(run["place.pose_out"].values, run["hand.pose"].values)
+        np.testing.assert_array_equal(run["place.at"].values, run["hand.pose"].values[:, :3])
+        np.testing.assert_allclose(run["place.speed"]["value"], np.linalg.norm(run["hand.twist"].values[:, :3], axis=1))
+        np.testing.assert_array_equal(run["place.moves"]["value"], run["place.speed"]["value"] > 0)
+        self.assertGreater(run["place.speed"]["value"].max(), 0.01)
+
+    def test_a_render_on_any_threads_and_any_steps_of_advance_have_the_same_bits(self):
+        declare_nodes()
+
+        @tactus.node("py_echo", inputs={"in": "signal"}, outputs={"out": "signal"})
+        class Echo:
+            def prepare(self, setup):
+                self.past = np.zeros(int(0.003 * setup.rate), np.float32)
+
+            def process(self, block):
+                for i in range(block.frames):  # a loop is slow and simple: one sample each
+                    block["out"][i] = block["in"][i] + np.float32(0.5) * self.past[0]
+                    self.past = np.append(self.past[1:], block["out"][i])
+
+        patch = tactus.parse(CLIPPED.replace('hand.twist ->', 's.signal -> echo.in", "hand.twist ->') +
+                             'echo = { type = "py_echo", rate = "48 kHz" }\n')
+        expected = {patch.render(0.05, threads=threads).hash for threads in (1, 3)}
+        for step in (0.05, 0.001, 0.0007, 0.00001 * 7):
+            with patch.start() as run:
+                while run.time < 0.05 - 1e-9:
+                    run.advance(min(step, 0.05 - run.time))
+            expected.add(run.hash)
+        self.assertEqual(len(expected), 1)
+
+    def test_arrays_lie_in_the_memory_of_the_engine(self):
+        seen = []
+
+        def keep(block):
+            seen.append((block["out"].__array_interface__["data"][0], block["out"].base is not None, block.frames))
+            block["out"][:] = block.t
+
+        run = self.render(keep)
+        np.testing.assert_array_equal(run["a.out"]["value"], (np.arange(480) / 48000).astype(np.float32))
+        self.assertEqual(len({place for place, _, _ in seen}), 1)  # the engine's, reused
+        self.assertTrue(all(is_view for _, is_view, _ in seen))
+        self.assertGreater(max(frames for _, _, frames in seen), 1)
+
+    def test_an_array_that_is_kept_outlives_the_run(self):
+        kept = []
+        self.render(lambda block: kept.append((block, block["out"])))
+        for i in range(20):
+            self.render(lambda block: None)
+        gc.collect()
+        for block, array in kept:
+            array[:] = 1.0
+            with self.assertRaisesRegex(tactus.Error, "the block is over"):
+                block["out"]
+
+    def test_an_output_that_is_left_alone_holds_its_value(self):
+        def once(block):
+            if block.index == 0:
+                block["out"][-1] = 4.0
+
+        values = self.render(once)["a.out"]["value"]
+        first = int(np.argmax(values))
+        np.testing.assert_array_equal(values, np.where(np.arange(480) < first, 0.0, 4.0))
+
+    def test_what_a_callback_does_wrong_is_one_error_with_the_place(self):
+        def divide(block):
+            return 1 // 0
+
+        def assign(values, port="out"):
+            def process(block):
+                block[port] = values
+            return process
+
+        def write_input(block):
+            block["in"][:] = 0.0
+
+        def wrong_slice(block):
+            block["out"][:] = np.zeros(7)
+
+        for code, words in ((divide, r"ZeroDivisionError: .*test_tactus.py, line \d+"),
+                            (assign(np.zeros(7)), r"'out' has the shape \(\d+,\), given \(7,\)"),
+                            (assign(np.zeros((2, 2))), "given \\(2, 2\\)"),
+                            (assign(1j), "'out' holds float32, given complex128"), (assign("a"), "given <U1"),
+                            (assign(object()), "given object"), (assign(0, "ou"), "no port or parameter 'ou'"),
+                            (wrong_slice, "could not broadcast"), (lambda: None, "TypeError")):
+            with self.assertRaisesRegex(tactus.Error, "node 'a' of type 'py_test': (?s:.*)" + words) as caught:
+                self.render(code)
+            self.assertEqual(caught.exception.line, 1)
+            self.assertIsNotNone(caught.exception.__cause__)
+        tactus.node("py_test", inputs={"in": "signal"}, outputs={"out": "signal"})(write_input)
+        with self.assertRaisesRegex(tactus.Error, "read-only"):
+            tactus.parse('wires = ["s.signal -> a.in"]\n[nodes]\ns = { type = "sine", rate = "48 kHz" }\n'
+                         'a = { type = "py_test", rate = "48 kHz" }\n').render(0.01)
+
+    def test_an_interrupt_within_a_callback_interrupts_the_render(self):
+        def interrupt(block):
+            raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            self.render(interrupt, seconds=3600)
+        self.assertEqual(len(self.render(lambda block: None)["a.out"]), 480)
+
+    def test_a_failure_while_preparing_is_an_error_of_start(self):
+        class Node:
+            def prepare(self, setup):
+                raise ValueError(f"{setup.name} at {setup.rate:g} Hz, {setup.max_frames > 0}, {setup.seed != 0}")
+
+            def process(self, block):
+                pass
+
+        with self.assertRaisesRegex(tactus.Error, "ValueError: a at 48000 Hz, True, True"):
+            self.render(Node)
+
+    def test_wrong_declarations_are_errors(self):
+        for name, arguments, words in (
+                ("gain", {}, "Tactus has a type of this name already"), ("a b", {}, "a name has letters"),
+                ("py_test", dict(inputs={"in": "event"}), "'event' is not one of"),
+                ("py_test", dict(inputs={"in": tactus.Port("signal", "parsec")}), "unit of 'in'"),
+                ("py_test", dict(parameters={"gain": ("1", "2", "3")}), "gain"),
+                ("py_test", dict(inputs={"x": "signal"}, outputs={"x": "signal"}), "listed twice")):
+            with self.assertRaisesRegex(tactus.Error, words):
+                tactus.node(name, **arguments)(lambda block: None)
+        with self.assertRaisesRegex(tactus.Error, "with 'process'"):
+            tactus.node("py_test")(type("Empty", (), {}))
+
+    def test_a_live_run_refuses_a_node_of_python(self):
+        declare_nodes()
+        with self.assertRaisesRegex(tactus.Error, "node 'clip' of type 'py_clip' .* cannot run live") as caught:
+            tactus.parse(CLIPPED).start(0.1, live=True)
+        self.assertEqual(caught.exception.line, 8)
+
+    def test_a_callback_that_uses_its_own_run_gets_an_error(self):
+        runs = []
+        tactus.node("py_test", outputs={"out": "signal"})(lambda block: runs[0].advance(0.001))
+        runs.append(tactus.parse('[nodes.a]\ntype = "py_test"\nrate = "48 kHz"\n').start())
+        with self.assertRaisesRegex(tactus.Error, "another thread is using this run"):
+            runs[0].advance(0.01)
+
+    def test_a_sweep_calls_a_node_from_several_threads(self):
+        declare_nodes()
+        rows = list(tactus.parse(CLIPPED).sweep({"clip.drive": [1, 2, 3, 4]}, 0.05, jobs=3))
+        for point, done in rows:
+            np.testing.assert_array_equal(
+                done["clip.out"]["value"],
+                np.tanh(np.float32(point["clip.drive"]) * done["s.signal"]["value"].astype(np.float32)))
+
+    def test_two_threads_on_one_patch_or_run_give_values_or_one_clear_error(self):
+        declare_nodes()
+        patch = tactus.parse(CLIPPED)
+        run, refused, others = patch.start(), [], []
+
+        def work():
+            for _ in range(50):
+                for use in (lambda: run.advance(0.0005), lambda: patch.start()):
+                    try:
+                        use()
+                    except tactus.Error as error:
+                        (refused if "another thread is using" in str(error) else others).append(str(error))
+
+        threads = [threading.Thread(target=work) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(others, [])
+        self.assertAlmostEqual(run.time, 0.0005 * round(run.time / 0.0005))
+
+    def test_nothing_is_left_of_runs_that_are_over(self):
+        before = None
+        for i in range(30):
+            self.render(lambda block: None, seconds=0.001)
+            gc.collect()
+            before = before or len(tactus.node.__globals__["_nodes"])
+        self.assertEqual(len(tactus.node.__globals__["_nodes"]), before)
+
+    def test_a_program_may_end_with_a_run_that_is_not_over(self):
+        script = """
+import tactus
+tactus.node("py_end", outputs={"out": "signal"})(lambda block: None)
+run = tactus.parse('[nodes.a]\\ntype = "py_end"\\nrate = "48 kHz"\\n').start()
+run.advance(0.01)
+"""
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
 class LiveRuns(unittest.TestCase):
     def test_without_a_run_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -17,10 +17,11 @@ Units are SI. Patches need libtactus (package libtactus0.1); takes need numpy on
 
 from .analysis import Comparison, Exposure, compare, exposure, spectrum
 from .live import Live
+from .node import Block, Parameter, Port, Setup, node
 from .patch import Patch, Run, load, parse, version
 from .stream import Stream
 from .take import Take, open
 from .errors import Error
 
-__all__ = ["Comparison", "Error", "Exposure", "Live", "Patch", "Run", "Stream", "Take", "compare", "exposure", "load", "open",
-           "parse", "spectrum", "version"]
+__all__ = ["Block", "Comparison", "Error", "Exposure", "Live", "Parameter", "Patch", "Port", "Run", "Setup", "Stream",
+           "Take", "compare", "exposure", "load", "node", "open", "parse", "spectrum", "version"]

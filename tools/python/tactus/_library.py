@@ -46,7 +46,42 @@ class Exposure(c.Structure):
                 ("seconds_to_action", c.c_double), ("seconds_to_limit", c.c_double)]
 
 
+class Port(c.Structure):
+    _fields_ = [("name", c.c_char_p), ("type", c.c_char_p), ("unit", c.c_char_p), ("about", c.c_char_p),
+                ("optional", c.c_int)]
+
+
+class Parameter(c.Structure):
+    _fields_ = [("name", c.c_char_p), ("initial", c.c_char_p), ("lowest", c.c_char_p), ("highest", c.c_char_p),
+                ("about", c.c_char_p)]
+
+
+class Setup(c.Structure):
+    _fields_ = [("name", c.c_char_p), ("rate", c.c_double), ("max_frames", c.c_int), ("seed", c.c_uint64)]
+
+
+class Rows(c.Structure):
+    _fields_ = [("values", c.c_void_p), ("stride", c.c_ssize_t)]
+
+
+class Block(c.Structure):
+    _fields_ = [("index", c.c_int64), ("rate", c.c_double), ("frames", c.c_int), ("inputs", c.POINTER(Rows)),
+                ("outputs", c.POINTER(Rows)), ("parameters", c.POINTER(c.c_double))]
+
+
 _ERROR, _DOUBLES = c.POINTER(ErrorText), c.POINTER(c.c_double)
+PREPARE = c.CFUNCTYPE(c.c_int, c.c_void_p, c.POINTER(Setup), c.POINTER(c.c_void_p), _ERROR)
+PROCESS = c.CFUNCTYPE(c.c_int, c.c_void_p, c.POINTER(Block), _ERROR)
+RELEASE = c.CFUNCTYPE(None, c.c_void_p)
+
+
+class NodeType(c.Structure):
+    _fields_ = [("size", c.c_size_t), ("name", c.c_char_p), ("about", c.c_char_p), ("inputs", c.POINTER(Port)),
+                ("input_count", c.c_int), ("outputs", c.POINTER(Port)), ("output_count", c.c_int),
+                ("parameters", c.POINTER(Parameter)), ("parameter_count", c.c_int), ("context", c.c_void_p),
+                ("prepare", PREPARE), ("process", PROCESS), ("release", RELEASE)]
+
+
 _FUNCTIONS = {
     "version": (c.c_char_p, []),
     "load": (c.c_void_p, [c.c_char_p, _ERROR]),
@@ -72,6 +107,7 @@ _FUNCTIONS = {
     "summary": (c.c_char_p, [c.c_void_p]),
     "hash": (c.c_uint64, [c.c_void_p]),
     "free_run": (None, [c.c_void_p]),
+    "declare_node": (c.c_int, [c.POINTER(NodeType), _ERROR]),
     "spectrum": (c.c_size_t, [_DOUBLES, c.c_size_t, c.c_double, c.c_size_t, _DOUBLES, _DOUBLES, c.c_size_t, _ERROR]),
     "compare": (c.c_int, [_DOUBLES, c.c_size_t, c.c_double, _DOUBLES, c.c_size_t, c.c_double, c.POINTER(Comparison),
                           _ERROR]),

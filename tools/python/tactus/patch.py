@@ -16,6 +16,7 @@ import numpy as np
 from . import _library
 from ._library import call, doubles, library
 from .errors import Error
+from .node import RunMemory
 from .stream import Stream, table_of
 
 
@@ -79,7 +80,10 @@ class Patch:
         options = _library.Options(ctypes.sizeof(_library.Options), seconds, seed,
                                    os.fspath(folder).encode() if folder is not None else None, audio.encode(),
                                    int(live), threads)
-        return Run(call("start", self._pointer, ctypes.byref(options)), keep or ())
+        memory = RunMemory()
+        with memory.starting():
+            memory.pointer = memory.call("start", self._pointer, ctypes.byref(options))
+        return Run(memory, keep or ())
 
     def render(self, seconds: float, *, seed: int = 0, outputs: Sequence[str] | None = None,
                folder: str | os.PathLike[str] | None = None, threads: int = 0) -> "Rendered":
@@ -87,7 +91,7 @@ class Patch:
         with self.start(seconds, seed=seed, folder=folder, threads=threads) as run:
             for port in run.outputs() if outputs is None else outputs:
                 run.keep(port)
-            call("render", run._pointer)
+            run._memory.call("render", run._pointer)
             streams = {port: run.fetch(port) for port in run.kept()}
             run.finish()
             return Rendered(streams, run.hash, run.summary)
@@ -148,8 +152,8 @@ class Rendered(Mapping[str, Stream]):
 class Run:
     """One run of a patch; a context that finishes it. One thread at a time."""
 
-    def __init__(self, pointer: int, keep: Iterable[str]) -> None:
-        self._pointer = pointer
+    def __init__(self, memory: RunMemory, keep: Iterable[str]) -> None:
+        self._memory = memory
         self._outputs: dict[str, tuple[int, str, list[str], float]] = {}
         self._kept: list[str] = []
         self._hands: dict[str, int] = {}
@@ -158,10 +162,9 @@ class Run:
         for port in keep:
             self.keep(port)
 
-    def __del__(self) -> None:
-        pointer, self._pointer = getattr(self, "_pointer", None), None
-        if pointer:
-            library().tactus_free_run(pointer)
+    @property
+    def _pointer(self) -> int:
+        return self._memory.pointer
 
     def __enter__(self) -> "Run":
         return self
@@ -198,7 +201,7 @@ class Run:
 
     def advance(self, seconds: float) -> None:
         """Runs every activation before the present logical time + `seconds`."""
-        call("advance", self._pointer, seconds)
+        self._memory.call("advance", self._pointer, seconds)
 
     @property
     def time(self) -> float:
