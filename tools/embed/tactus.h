@@ -244,6 +244,32 @@ typedef struct tactus_exposure {
 int tactus_hand_arm_exposure(const double* const axes[3], size_t count, double rate, double seconds_a_day,
                              tactus_exposure* exposure, tactus_error* error);
 
+/* Triangles with shared vertices, counter-clockwise seen from outside. It need not be closed. */
+typedef struct tactus_mesh {
+    const double* vertices; /* x, y, z of each, m */
+    size_t vertex_count;
+    const int32_t* triangles; /* three indices of each, from 0 */
+    size_t triangle_count;
+} tactus_mesh;
+
+typedef struct tactus_registration {
+    /* "fit": clearly better than any other pose. "ambiguous": another one is about as good, as for a shape that is nearly
+     * symmetric. "none": no pose brings the surfaces together. */
+    const char* verdict;
+    double position[3];    /* of the best pose of the moving mesh in the frame of the fixed one, m */
+    double orientation[4]; /* w, x, y, z */
+    double rms; /* m, of the distances of both surfaces, each limited; if one is a part of the other, only of the part's */
+    double median, p90; /* m, of the distances of the moving vertices from the fixed surface */
+    double covered;     /* 0 to 1: vertices of the moving mesh within 2 mm of the fixed surface */
+    double rival_rms;   /* m, of the best other pose; infinity: none was found */
+    double rival_position[3], rival_orientation[4];
+} tactus_registration;
+/* The rigid pose that brings a mesh onto another one of the same shape, or of a part of it, as `tactus register` finds it.
+ * `anywhere` 0: of poses that fit equally well, the one nearest to the given coordinates. Both meshes are 1 mm to 5 m
+ * across. Takes seconds. */
+int tactus_register(const tactus_mesh* moving, const tactus_mesh* fixed, int anywhere,
+                    tactus_registration* registration, tactus_error* error);
+
 #ifdef __cplusplus
 }
 #endif

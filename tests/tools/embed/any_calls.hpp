@@ -73,7 +73,7 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
         std::memset(&error, 0, sizeof(error));
         bool has_failed = false;
         double* const room = pick(5) ? values.data() : nullptr;
-        switch (pick(20)) {
+        switch (pick(21)) {
             case 0: has_failed = tactus_configure(patch, word(), told) < 0; break;
             case 1: has_failed = tactus_use_asset(patch, word(), told) < 0; break;
             case 2: has_failed = tactus_attach_hand(patch, word(), nullptr, told) < 0; break;
@@ -136,6 +136,20 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
                 type.parameter_count = pick(2);
                 if (pick(5)) type.process = [](void*, const tactus_block*, tactus_error*) { return 0; };
                 has_failed = tactus_declare_node(pick(5) ? &type : nullptr, told) < 0;
+                break;
+            }
+            case 19: {
+                // Small enough to be searched in a moment.
+                constexpr std::array<std::int32_t, 12> triangles{0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+                constexpr std::array<double, 12> corners{0.0, 0.0, 0.0, 0.03, 0.0, 0.0, 0.0, 0.02, 0.0, 0.0, 0.0, 0.01};
+                const auto some = [&] {
+                    return tactus_mesh{pick(7) ? corners.data() : nullptr, static_cast<std::size_t>(pick(5)),
+                                       pick(7) ? triangles.data() : nullptr, static_cast<std::size_t>(pick(5))};
+                };
+                const tactus_mesh moving = some(), fixed = some();
+                tactus_registration registration{};
+                has_failed = tactus_register(pick(9) ? &moving : nullptr, &fixed, pick(2),
+                                             pick(9) ? &registration : nullptr, told) < 0;
                 break;
             }
             default:

@@ -2,6 +2,7 @@
 """tactus in Python, each test named as a claim. Run by ctest with the library and the command of the build."""
 
 import gc
+import json
 import os
 import pathlib
 import resource
@@ -453,6 +454,65 @@ run.advance(0.01)
 """
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
+def lump(rows=30):
+    """A closed mesh without symmetry, about 30 mm across: vertices in m, triangles."""
+    v, u = np.meshgrid(np.linspace(0, np.pi, rows + 1), np.arange(2 * rows) * np.pi / rows, indexing="ij")
+    x, y, z = np.sin(v) * np.cos(u), np.sin(v) * np.sin(u), np.cos(v)
+    r = 1e-3 * (12 + 4 * x + 3 * y * z + 2.5 * x * y + 5 * z * z + 3 * y * x * x)
+    i, j = (each.reshape(-1) for each in np.meshgrid(np.arange(rows), np.arange(2 * rows), indexing="ij"))
+    a, b = i * 2 * rows + j, i * 2 * rows + (j + 1) % (2 * rows)
+    c, d = a + 2 * rows, b + 2 * rows
+    return (r[..., None] * np.stack([x, y, z], axis=-1)).reshape(-1, 3), np.concatenate(
+        [np.stack([a, c, b], axis=1), np.stack([b, c, d], axis=1)])
+
+
+class Registrations(unittest.TestCase):
+    def test_a_moved_mesh_is_brought_back(self):
+        vertices, triangles = lump()
+        truth = tactus.Pose(np.array([0.03, -0.02, 0.05]), np.array([0.8, 0.0, 0.36, -0.48]))
+        found = tactus.register((vertices, triangles), (truth.apply(vertices), triangles))
+        self.assertEqual(found.verdict, "fit")
+        self.assertLess(np.abs(found.pose.apply(vertices) - truth.apply(vertices)).max(), 20e-6)
+        np.testing.assert_allclose(found.pose.matrix @ [0.01, 0.02, 0.03, 1], [*truth.apply([0.01, 0.02, 0.03]), 1],
+                                   atol=2e-5)
+        self.assertLess(found.p90, 10e-6)
+        self.assertEqual(found.covered, 1.0)
+        self.assertGreater(found.rival_rms, 10 * found.rms)
+
+    def test_meshes_of_any_types_and_layouts_give_the_same_as_the_command(self):
+        vertices, triangles = lump(12)
+        moved = tactus.Pose(np.array([0.01, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0])).apply(vertices)
+        expected = tactus.register((vertices, triangles), (moved, triangles))
+        again = tactus.register((np.asfortranarray(vertices), triangles.astype(np.uint16)),
+                                (moved.tolist(), triangles.tolist()))
+        np.testing.assert_array_equal(again.pose.position, expected.pose.position)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, corners in (("moving", vertices), ("fixed", moved)):
+                lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in 1e3 * corners]
+                lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+                pathlib.Path(f"{folder}/{name}.obj").write_text("\n".join(lines) + "\n")
+            done = subprocess.run([COMMAND, "register", f"{folder}/moving.obj", f"{folder}/fixed.obj", "--json"],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = json.loads(done.stdout)
+        self.assertEqual(told["verdict"], expected.verdict)
+        np.testing.assert_allclose(told["pose"]["position_mm"], 1e3 * expected.pose.position, atol=0.02)
+
+    def test_wrong_meshes_are_errors_that_say_which(self):
+        good = lump(8)
+        vertices, triangles = good
+        for mesh, words in (((vertices * 1e3, triangles), "vertices are in m"), (vertices, "no pair of arrays"),
+                            (None, "no pair"),
+                            ((vertices[:, :2], triangles), r"shape \(\d+, 2\)"),
+                            ((vertices, triangles.astype(float)), "float64, not integers"),
+                            ((vertices, triangles - 1), "from -1"), ((vertices, triangles + 2**33), "vertices from"),
+                            ((vertices.astype(complex), triangles), "not numbers"),
+                            ((vertices, triangles[:0]), "no triangles"),
+                            ((np.full_like(vertices, np.nan), triangles), "not finite")):
+            with self.assertRaisesRegex(tactus.Error, f"fixed mesh.*{words}|{words}.*fixed mesh"):
+                tactus.register(good, mesh)
 
 
 class LiveRuns(unittest.TestCase):

@@ -7,6 +7,7 @@
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
+#include "dsp/fit/registration/vertex_points.hpp"
 #include "tools/analysis/bone/fragment_file.hpp"
 #include "tools/analysis/workers.hpp"
 
@@ -54,21 +55,7 @@ std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& p
     if (!is_mesh(path)) {
         return bone::surface_points(bone_of_file(path), {.spacing = spacing}, on_threads());
     }
-    const mesh::Mesh mesh = mesh_of_file(path);
-    std::vector<contact::SurfacePoint> points(mesh.vertices.size());
-    for (std::size_t n = 0; n < points.size(); ++n) points[n] = {mesh.vertices[n], Vec3(0.0), 0.0, 0};
-    for (const auto& t : mesh.triangles) {
-        const auto corner = [&](std::size_t c) { return static_cast<std::size_t>(t[c]); };
-        const Vec3 across = glm::cross(mesh.vertices[corner(1)] - mesh.vertices[corner(0)],
-                                       mesh.vertices[corner(2)] - mesh.vertices[corner(0)]);
-        for (std::size_t c = 0; c < 3; ++c) {
-            points[corner(c)].normal += across;
-            points[corner(c)].area += glm::length(across) / 6.0;
-        }
-    }
-    std::erase_if(points, [](const contact::SurfacePoint& p) { return !(glm::length(p.normal) > 0.0); });
-    for (contact::SurfacePoint& p : points) p.normal = glm::normalize(p.normal);
-    return points;
+    return fit::vertex_points(mesh_of_file(path));
 }
 
 double angle_deg(const Pose& pose) {

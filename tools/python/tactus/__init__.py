@@ -19,9 +19,11 @@ from .analysis import Comparison, Exposure, compare, exposure, spectrum
 from .live import Live
 from .node import Block, Parameter, Port, Setup, node
 from .patch import Patch, Run, load, parse, version
+from .registration import Pose, Registration, register
 from .stream import Stream
 from .take import Take, open
 from .errors import Error
 
-__all__ = ["Block", "Comparison", "Error", "Exposure", "Live", "Parameter", "Patch", "Port", "Run", "Setup", "Stream",
-           "Take", "compare", "exposure", "load", "node", "open", "parse", "spectrum", "version"]
+__all__ = ["Block", "Comparison", "Error", "Exposure", "Live", "Parameter", "Patch", "Port", "Pose",
+           "Registration", "Run", "Setup", "Stream", "Take", "compare", "exposure", "load", "node", "open", "parse",
+           "register", "spectrum", "version"]

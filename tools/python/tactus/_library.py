@@ -69,6 +69,17 @@ class Block(c.Structure):
                 ("outputs", c.POINTER(Rows)), ("parameters", c.POINTER(c.c_double))]
 
 
+class Mesh(c.Structure):
+    _fields_ = [("vertices", c.POINTER(c.c_double)), ("vertex_count", c.c_size_t),
+                ("triangles", c.POINTER(c.c_int32)), ("triangle_count", c.c_size_t)]
+
+
+class Registration(c.Structure):
+    _fields_ = [("verdict", c.c_char_p), ("position", c.c_double * 3), ("orientation", c.c_double * 4),
+                ("rms", c.c_double), ("median", c.c_double), ("p90", c.c_double), ("covered", c.c_double),
+                ("rival_rms", c.c_double), ("rival_position", c.c_double * 3), ("rival_orientation", c.c_double * 4)]
+
+
 _ERROR, _DOUBLES = c.POINTER(ErrorText), c.POINTER(c.c_double)
 PREPARE = c.CFUNCTYPE(c.c_int, c.c_void_p, c.POINTER(Setup), c.POINTER(c.c_void_p), _ERROR)
 PROCESS = c.CFUNCTYPE(c.c_int, c.c_void_p, c.POINTER(Block), _ERROR)
@@ -112,6 +123,7 @@ _FUNCTIONS = {
     "compare": (c.c_int, [_DOUBLES, c.c_size_t, c.c_double, _DOUBLES, c.c_size_t, c.c_double, c.POINTER(Comparison),
                           _ERROR]),
     "hand_arm_exposure": (c.c_int, [_DOUBLES * 3, c.c_size_t, c.c_double, c.c_double, c.POINTER(Exposure), _ERROR]),
+    "register": (c.c_int, [c.POINTER(Mesh), c.POINTER(Mesh), c.c_int, c.POINTER(Registration), _ERROR]),
 }
 
 
