@@ -4,6 +4,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tools/embed/c_errors.hpp"
+#include "tools/embed/c_use.hpp"
 #include "tools/embed/embedded.hpp"
 
 #include <fmt/format.h>
@@ -33,24 +34,7 @@ struct tactus_run {
 namespace {
 
 using embed::guarded;
-
-/// The right to use a patch or a run.
-template <class Object>
-class Use {
-public:
-    explicit Use(Object* object, const char* what) : object_(object) {
-        if (!object) throw Error(fmt::format("there is no {}: NULL was given", what));
-        if (object->is_used.exchange(true))
-            throw Error(fmt::format("another thread is using this {}; one at a time", what));
-    }
-    ~Use() { object_->is_used = false; }
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
-    Object* operator->() const { return object_; }
-
-private:
-    Object* object_;
-};
+using embed::Use;
 
 Use<tactus_patch> use(tactus_patch* patch) { return Use<tactus_patch>(patch, "patch"); }
 Use<tactus_run> use(tactus_run* run) { return Use<tactus_run>(run, "run"); }

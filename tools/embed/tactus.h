@@ -270,6 +270,35 @@ typedef struct tactus_registration {
 int tactus_register(const tactus_mesh* moving, const tactus_mesh* fixed, int anywhere,
                     tactus_registration* registration, tactus_error* error);
 
+/* Contact of two rigid bodies in six degrees of freedom: points on the surface of the moving mesh against the distance
+ * field of the fixed one (McNeely, Puterbaugh and Troy 1999), as in patches. Each point is a spring along the gradient
+ * of the distance: its force is stiffness · area · depth, where area is the surface that the point represents. */
+typedef struct tactus_contact tactus_contact;
+typedef struct tactus_contact_settings {
+    size_t size;      /* sizeof(tactus_contact_settings) */
+    double stiffness; /* N/m per m² of the moving surface; 0: 4e10, 10 N/mm for each point 0.5 mm apart */
+    double spacing;   /* m, of the points; 0: 0.5 mm */
+    double voxel;     /* m, of the distance field; 0: 0.5 mm */
+} tactus_contact_settings;
+/* The fixed mesh must be closed, with triangles counter-clockwise seen from outside. `settings` NULL: all 0. Takes up
+ * to seconds. The meshes are copied. */
+tactus_contact* tactus_make_contact(const tactus_mesh* moving, const tactus_mesh* fixed,
+                                    const tactus_contact_settings* settings, tactus_error* error);
+typedef struct tactus_contact_sum {
+    double wrench[6]; /* on the moving mesh: N, and N·m about the position of its pose; axes of the fixed mesh */
+    /* Second derivative of the energy by a small motion of the moving mesh, vx vy vz wx wy wz in m and rad about the
+     * position of its pose, row by row: N/m, N/rad, N·m/rad. Without the part of the curvature. */
+    double stiffness[36];
+    double energy;      /* J */
+    double penetration; /* m, of the deepest point */
+    int64_t points;     /* that have a force */
+} tactus_contact_sum;
+/* The contact at `count` poses of the moving mesh in the frame of the fixed one, seven numbers each: px, py, pz in m,
+ * qw, qx, qy, qz of length 1. Fills `count` sums. One thread at a time; a second one gets an error. */
+int tactus_contact_at(tactus_contact* contact, const double* poses, size_t count, tactus_contact_sum* sums,
+                      tactus_error* error);
+void tactus_free_contact(tactus_contact* contact);
+
 #ifdef __cplusplus
 }
 #endif

@@ -148,6 +148,18 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
                 };
                 const tactus_mesh moving = some(), fixed = some();
                 tactus_registration registration{};
+                tactus_contact_settings settings{sizeof(settings), number(), 0.0, 0.002};
+                if (pick(3) == 0) {
+                    tactus_contact* const contact =
+                        tactus_make_contact(&moving, &fixed, pick(5) ? &settings : nullptr, told);
+                    has_failed = !contact;
+                    if (contact) {
+                        tactus_contact_sum sum{};
+                        has_failed = tactus_contact_at(contact, room, 1, pick(5) ? &sum : nullptr, told) < 0;
+                    }
+                    tactus_free_contact(contact);
+                    break;
+                }
                 has_failed = tactus_register(pick(9) ? &moving : nullptr, &fixed, pick(2),
                                              pick(9) ? &registration : nullptr, told) < 0;
                 break;

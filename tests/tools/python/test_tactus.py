@@ -515,6 +515,76 @@ class Registrations(unittest.TestCase):
                 tactus.register(good, mesh)
 
 
+def slab():
+    """A closed box, m, whose top is at z = 0: vertices, triangles."""
+    corners = [(x, y, z) for z in (-0.01, 0.0) for y in (-0.02, 0.02) for x in (-0.02, 0.02)]
+    return np.array(corners), np.array([(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+                                        (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)])
+
+
+class Contacts(unittest.TestCase):
+    def test_a_cube_on_a_slab_has_the_force_of_its_face_and_torques_about_its_pose(self):
+        vertices, triangles = slab()
+        # 8 × 8 × 10 mm, bottom at z = 0.
+        cube = (vertices + [0, 0, 0.005]) * [0.2, 0.2, 1] + [0.004, 0, 0.005], triangles
+        contact = tactus.Contact(cube, slab(), stiffness=1e9, voxel=0.25e-3)
+        depths = np.linspace(0.1e-3, 0.4e-3, 4)
+        poses = np.array([[0, 0, -depth, 1, 0, 0, 0] for depth in depths])
+        found = contact(poses)
+        self.assertEqual((found.wrench.shape, found.stiffness.shape, found.energy.shape), ((4, 6), (4, 6, 6), (4,)))
+        force = 1e9 * (0.008**2 * depths + 4 * 0.008 * depths**2 / 2)  # of its bottom and its sides
+        np.testing.assert_allclose(found.wrench[:, 2], force, rtol=0.05)
+        np.testing.assert_allclose(found.wrench[:, 4], -0.004 * found.wrench[:, 2], rtol=0.03)
+        np.testing.assert_allclose(found.penetration, depths, rtol=0.02)
+        self.assertTrue(np.all(found.points > 100))
+        one = contact(tactus.Pose(poses[1, :3], poses[1, 3:]))
+        self.assertEqual(one.stiffness.shape, (6, 6))
+        np.testing.assert_array_equal(one.wrench, found.wrench[1])
+        np.testing.assert_array_equal(contact(poses[1].tolist()).wrench, one.wrench)
+        np.testing.assert_allclose(one.stiffness, one.stiffness.T)
+        slope = (found.wrench[0, 2] - found.wrench[2, 2]) / (depths[0] - depths[2])
+        self.assertAlmostEqual(one.stiffness[2, 2] / slope, 1.0, delta=0.05)
+        self.assertEqual(contact([0, 0, 0.001, 1, 0, 0, 0]).points, 0)
+        self.assertEqual(contact(np.zeros((0, 7))).wrench.shape, (0, 6))
+
+    def test_wrong_contacts_are_errors_that_say_what(self):
+        vertices, triangles = slab()
+        for fixed, arguments, words in (((vertices, triangles[1:]), {}, "not closed"),
+                                        ((vertices, triangles[:, ::-1]), {}, "inside out"),
+                                        (slab(), dict(voxel=1e-5), "wider voxel"),
+                                        (slab(), dict(spacing=-1), "above 0"),
+                                        (slab(), dict(stiffness=float("nan")), "above 0"),
+                                        (vertices, {}, "no pair of arrays")):
+            with self.assertRaisesRegex(tactus.Error, words):
+                tactus.Contact(slab(), fixed, **arguments)
+        contact = tactus.Contact(slab(), slab(), voxel=1e-3, spacing=1e-3)
+        for poses, words in ((np.zeros((2, 6)), r"given float64 \(2, 6\)"), ("pose", "given <U4"),
+                             (np.zeros(7), "pose 0 is not valid"), (None, "given object"),
+                             ([[0, 0, 0, 1, 0, 0, 0], [0, 0, np.nan, 1, 0, 0, 0]], "pose 1 is not valid")):
+            with self.assertRaisesRegex(tactus.Error, words):
+                contact(poses)
+
+    def test_two_threads_on_one_contact_give_sums_or_one_clear_error(self):
+        contact = tactus.Contact(slab(), slab(), voxel=1e-3, spacing=1e-3)
+        pose, others = np.tile([0, 0, 0.009, 1, 0, 0, 0], (200, 1)), []
+        expected = contact(pose).wrench
+
+        def work():
+            for _ in range(30):
+                try:
+                    np.testing.assert_array_equal(contact(pose).wrench, expected)
+                except tactus.Error as error:
+                    if "another thread is using this contact" not in str(error):
+                        others.append(str(error))
+
+        threads = [threading.Thread(target=work) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(others, [])
+
+
 class LiveRuns(unittest.TestCase):
     def test_without_a_run_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -16,14 +16,16 @@ Units are SI. Patches need libtactus (package libtactus0.1); takes need numpy on
 """
 
 from .analysis import Comparison, Exposure, compare, exposure, spectrum
+from .contact import Contact, ContactSum
 from .live import Live
 from .node import Block, Parameter, Port, Setup, node
+from .mesh import Pose
 from .patch import Patch, Run, load, parse, version
-from .registration import Pose, Registration, register
+from .registration import Registration, register
 from .stream import Stream
 from .take import Take, open
 from .errors import Error
 
-__all__ = ["Block", "Comparison", "Error", "Exposure", "Live", "Parameter", "Patch", "Port", "Pose",
-           "Registration", "Run", "Setup", "Stream", "Take", "compare", "exposure", "load", "node", "open", "parse",
-           "register", "spectrum", "version"]
+__all__ = ["Block", "Comparison", "Contact", "ContactSum", "Error", "Exposure", "Live", "Parameter", "Patch", "Port",
+           "Pose", "Registration", "Run", "Setup", "Stream", "Take", "compare", "exposure", "load", "node", "open",
+           "parse", "register", "spectrum", "version"]

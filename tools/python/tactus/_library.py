@@ -80,6 +80,10 @@ class Registration(c.Structure):
                 ("rival_rms", c.c_double), ("rival_position", c.c_double * 3), ("rival_orientation", c.c_double * 4)]
 
 
+class ContactSettings(c.Structure):
+    _fields_ = [("size", c.c_size_t), ("stiffness", c.c_double), ("spacing", c.c_double), ("voxel", c.c_double)]
+
+
 _ERROR, _DOUBLES = c.POINTER(ErrorText), c.POINTER(c.c_double)
 PREPARE = c.CFUNCTYPE(c.c_int, c.c_void_p, c.POINTER(Setup), c.POINTER(c.c_void_p), _ERROR)
 PROCESS = c.CFUNCTYPE(c.c_int, c.c_void_p, c.POINTER(Block), _ERROR)
@@ -123,6 +127,9 @@ _FUNCTIONS = {
     "compare": (c.c_int, [_DOUBLES, c.c_size_t, c.c_double, _DOUBLES, c.c_size_t, c.c_double, c.POINTER(Comparison),
                           _ERROR]),
     "hand_arm_exposure": (c.c_int, [_DOUBLES * 3, c.c_size_t, c.c_double, c.c_double, c.POINTER(Exposure), _ERROR]),
+    "make_contact": (c.c_void_p, [c.POINTER(Mesh), c.POINTER(Mesh), c.POINTER(ContactSettings), _ERROR]),
+    "contact_at": (c.c_int, [c.c_void_p, _DOUBLES, c.c_size_t, c.c_void_p, _ERROR]),
+    "free_contact": (None, [c.c_void_p]),
     "register": (c.c_int, [c.POINTER(Mesh), c.POINTER(Mesh), c.c_int, c.POINTER(Registration), _ERROR]),
 }
 
