@@ -24,16 +24,23 @@ volume::Histogram threshold_histogram(volume::ReorientedVolume& source) {
     return histogram;
 }
 
-CtThreshold suggested_threshold(const volume::Histogram& histogram, volume::HuKind hu) {
-    const bool masked = hu == volume::HuKind::masked;
-    const double value = volume::suggested_threshold(histogram, masked);
-    // Where bone is rare or absent the second split lies between soft tissues.
-    if (hu == volume::HuKind::calibrated && value < min_of_bone)
-        return {common_for_bone, "common for bone; the values alone do not tell it from soft tissue", common_for_bone};
+CtThreshold suggested_threshold(const volume::Histogram& histogram, volume::HuKind hu, std::optional<double> stated) {
+    if (stated) return {*stated, "the surface of an exported bone, as the file states it", *stated};
     const bool is_wide = histogram.high - histogram.low > 200.0;
-    return {is_wide ? std::round(value) : value,
-            masked ? "half the median of the values that are not 0" : "Otsu's method twice: first air, then bone",
-            value};
+    const auto found = [is_wide](double value, const char* how) {
+        return CtThreshold{is_wide ? std::round(value) : value, how, value};
+    };
+    if (hu == volume::HuKind::masked)
+        return found(volume::half_of_median(histogram), "half the median of the values that are not 0");
+    if (hu != volume::HuKind::calibrated)
+        return found(volume::split_scanner_values(histogram), "Otsu's method twice: first air, then bone");
+    const volume::TissueSplit split = volume::split_hu(histogram);
+    if (!split.has_soft_tissue)
+        return {common_for_bone, "common for bone; the values show no soft tissue around it", common_for_bone};
+    // Where bone is rare or absent the last split lies between soft tissues.
+    if (split.threshold < min_of_bone)
+        return {common_for_bone, "common for bone; the values alone do not tell it from soft tissue", common_for_bone};
+    return found(split.threshold, split.has_air ? "Otsu's method, after air was split off" : "Otsu's method");
 }
 
 }  // namespace tactus::bone

@@ -5,6 +5,7 @@
 #include "assets/volume/reoriented_volume.hpp"
 #include "dsp/volume/histogram.hpp"
 
+#include <optional>
 #include <string>
 
 namespace tactus::bone {
@@ -20,8 +21,10 @@ volume::Histogram threshold_histogram(double low, double high);
 /// The same, filled by reading a volume once more, a few layers at a time. The volume must be settled.
 volume::Histogram threshold_histogram(volume::ReorientedVolume& source);
 
-/// Returns the threshold that `info` prints and `import` uses: volume::suggested_threshold, or 300 HU if that would be
-/// below 100 HU, where soft tissue is.
-CtThreshold suggested_threshold(const volume::Histogram& histogram, volume::HuKind hu);
+/// Returns the threshold that `info` prints and `import` uses. `stated`: HU of the surface in an exported bone
+/// (ScanVolume::surface_hu), which is used as it is: the histogram of a bone without soft tissue does not show it. HU:
+/// volume::split_hu, or 300 HU if that finds no soft tissue or would be below 100 HU, where soft tissue is.
+CtThreshold suggested_threshold(const volume::Histogram& histogram, volume::HuKind hu,
+                                std::optional<double> stated = {});
 
 }  // namespace tactus::bone

@@ -15,6 +15,10 @@ enum class BoneQuantity {
     distance  ///< signed distance, mm, negative inside
 };
 
+/// HU at the surfaces in the volume of these bones: their import threshold, the lowest one if they have several, 300 HU
+/// for bones from meshes and label maps.
+double surface_hu(std::span<const Bone> bones);
+
 /// One volume of all bones on a common lattice: at each sample the highest HU or density, or the smallest distance. Air
 /// is -1000 HU; outside all grids the distance is 1000 mm. Throws Error if the grids of the bones have no common
 /// lattice.

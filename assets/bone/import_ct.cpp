@@ -148,7 +148,8 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
         threshold = {*options.threshold, "given"};
     } else {
         check();
-        threshold = suggested_threshold(threshold_histogram(source), about.hu);
+        threshold = suggested_threshold(threshold_histogram(source), about.hu,
+                                        options.rescale ? std::nullopt : about.surface_hu);
         threshold.how = "suggested: " + threshold.how;
     }
     ImportInLayers how;

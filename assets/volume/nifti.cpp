@@ -35,6 +35,12 @@ struct Fields {
         std::memcpy(&value, raw.data(), sizeof(T));
         return value;
     }
+
+    /// Up to the first zero byte.
+    std::string text(std::size_t at, std::size_t size) const {
+        const std::string all(bytes.data() + at, size);
+        return all.substr(0, all.find('\0'));
+    }
 };
 
 // The fields of both versions.
@@ -45,6 +51,7 @@ struct Header {
     std::array<std::array<double, 4>, 3> rows{};
     double vox_offset = 0.0, slope = 0.0, intercept = 0.0;
     int datatype = 0, qform = 0, sform = 0, intent = 0, units = 0;
+    std::string description;
     bool is_pair = false;  // the samples are in a file of their own
 };
 
@@ -85,6 +92,7 @@ Header header_of(PackedFile& file, Fields& fields, const std::string& name) {
         Header h = take<std::int16_t, float, std::int16_t>(fields, {40, 76, 256, 268, 280, 112, 116, 70, 252, 254, 68});
         h.vox_offset = fields.get<float>(108);
         h.units = fields.bytes[123];
+        h.description = fields.text(148, 80);
         h.is_pair = is_pair;
         return h;
     }
@@ -97,6 +105,7 @@ Header header_of(PackedFile& file, Fields& fields, const std::string& name) {
     Header h = take<std::int64_t, double, std::int32_t>(fields, {16, 104, 352, 376, 400, 176, 184, 12, 344, 348, 504});
     h.vox_offset = static_cast<double>(fields.get<std::int64_t>(168));
     h.units = fields.get<std::int32_t>(500);
+    h.description = fields.text(240, 80);
     h.is_pair = is_pair;
     return h;
 }
@@ -226,6 +235,9 @@ public:
         about.encoding = in_samples.is_packed() ? "gzip" : "raw";
         for (std::size_t n = 0; n < 3; ++n) about.size[n] = static_cast<int>(h.dim[n + 1]);
         read_geometry(h, about, name);
+        const std::string key = std::string(surface_hu_key) + "=";
+        if (const std::size_t at = h.description.find(key); at != std::string::npos)
+            about.surface_hu = parse_surface_hu(std::string_view(h.description).substr(at + key.size()));
         const auto start = static_cast<std::uint64_t>(h.vox_offset);
         const bool packed = in_samples.is_packed();
         stream_.emplace(std::vector{SampleStream::Piece{samples, packed ? 0 : start, packed ? start : 0, count}}, type,

@@ -280,6 +280,7 @@ public:
         about.format = "NRRD";
         about.source = path.filename().string();
         about.encoding = name_of(header.encoding);
+        about.surface_hu = parse_surface_hu(header.value(std::string(surface_hu_key)));
         read_geometry(header, axes, about, file);
         check_size(header, axes, path);
         for (std::size_t n = 0; n < 3; ++n) about.size[n] = static_cast<int>(header.sizes[axes.space[n]]);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace tactus::volume {
@@ -33,6 +34,13 @@ HuKind guess_hu(const Tally& tally) {
 }
 
 }  // namespace
+
+std::optional<double> parse_surface_hu(std::string_view text) {
+    double value = 0.0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
 
 std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::string& file) {
     double count = 1.0;

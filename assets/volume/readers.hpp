@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,9 @@ std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const
 bool is_dicom_file(const std::filesystem::path& path);
 /// The files that are read of a folder and those in it, ascending. Throws Error when there are too many.
 std::vector<std::filesystem::path> dicom_files_in(const std::filesystem::path& folder);
+
+/// The value of surface_hu_key. None if the text is not a finite number.
+std::optional<double> parse_surface_hu(std::string_view text);
 
 /// Number of samples. Throws Error when an axis is empty or there are more than 1e9 samples.
 std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::string& file);

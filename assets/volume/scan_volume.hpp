@@ -32,6 +32,10 @@ std::string_view name_of(HuKind kind);      ///< "calibrated", "masked", "scanne
 std::string_view name_of(VolumeKind kind);  ///< "ct", "labels", "labels?"
 std::string_view name_of(Frame frame);      ///< "LPS", "RAS"
 
+/// Key of the HU of the surface in the header of an exported bone: a key/value pair in NRRD, "key=value" in the text
+/// `descrip` of NIfTI. Without it the surface could only be guessed from the histogram.
+inline constexpr std::string_view surface_hu_key = "tactus_surface_hu";
+
 /// One structure of a label map.
 struct Segment {
     int label = 1;                 ///< its value in the volume
@@ -50,6 +54,7 @@ struct ScanVolume {
     std::vector<Segment> segments;     ///< named segments of a label map
     bool unit_stated = true;           ///< false: the file states no unit of length, mm is assumed
     bool uniform = true;               ///< the slices were evenly spaced in the file; false: they were interpolated
+    std::optional<double> surface_hu;  ///< HU of the surface of an exported bone, as the file states it
     std::string format;                ///< "NRRD", "NIfTI", "DICOM", "InVesalius"
     std::string encoding;              ///< storage of the samples: "raw", "gzip", a transfer syntax, ...
     std::string source;                ///< name of the file or folder

@@ -73,8 +73,10 @@ std::string nrrd_header(const Grid& grid, const char* type, const std::string& m
         type, grid.size[0], grid.size[1], grid.size[2], h.x, h.y, h.z, o.x, o.y, o.z, more);
 }
 
-std::string nrrd_of(const Grid& grid, WrittenType type) {
-    return nrrd_header(grid, type == WrittenType::int16 ? "short" : "float", "") + gzipped(samples_of(grid, type));
+std::string nrrd_of(const Grid& grid, WrittenType type, std::optional<double> surface_hu) {
+    return nrrd_header(grid, type == WrittenType::int16 ? "short" : "float",
+                       surface_hu ? fmt::format("{}:={}\n", surface_hu_key, *surface_hu) : "") +
+           gzipped(samples_of(grid, type));
 }
 
 // The key/value lines that 3D Slicer reads from a segmentation.
@@ -99,7 +101,7 @@ std::string segment_lines(const Grid& layout, std::span<const Segment> segments)
 }
 
 // The NIfTI-1 header: 348 bytes with fixed offsets, then 4 bytes for "no extension".
-std::string nifti_of(const Grid& grid, WrittenType type) {
+std::string nifti_of(const Grid& grid, WrittenType type, std::optional<double> surface_hu) {
     std::string header(352, '\0');
     const auto put = [&header](std::size_t at, auto value) { std::memcpy(header.data() + at, &value, sizeof value); };
     const Vec3 h = grid.spacing * 1e3, o = grid.origin * 1e3;
@@ -118,7 +120,10 @@ std::string nifti_of(const Grid& grid, WrittenType type) {
     put(108, 352.0f);  // offset of the samples
     put(112, 1.0f);    // slope
     header[123] = 2;   // mm
-    std::memcpy(header.data() + 148, "Tactus", 6);
+    constexpr std::size_t descrip_bytes = 80;
+    const std::string about =
+        surface_hu ? fmt::format("Tactus {}={:.6g}", surface_hu_key, *surface_hu) : std::string("Tactus");
+    std::memcpy(header.data() + 148, about.data(), std::min(about.size(), descrip_bytes - 1));
     put(252, std::int16_t{1});  // scanner coordinates, for qform and sform
     put(254, std::int16_t{1});
     // LPS axes in RAS: a rotation by 180° about z, quaternion (0, 0, 0, 1).
@@ -133,11 +138,12 @@ std::string nifti_of(const Grid& grid, WrittenType type) {
 
 }  // namespace
 
-void write_volume(const Grid& grid, WrittenType type, const std::filesystem::path& path) {
+void write_volume(const Grid& grid, WrittenType type, const std::filesystem::path& path,
+                  std::optional<double> surface_hu) {
     const std::string name = path.filename().string();
-    if (name.ends_with(".nrrd")) file::write_whole_file(path, nrrd_of(grid, type));
-    else if (name.ends_with(".nii.gz")) file::write_whole_file(path, gzipped(nifti_of(grid, type)));
-    else if (name.ends_with(".nii")) file::write_whole_file(path, nifti_of(grid, type));
+    if (name.ends_with(".nrrd")) file::write_whole_file(path, nrrd_of(grid, type, surface_hu));
+    else if (name.ends_with(".nii.gz")) file::write_whole_file(path, gzipped(nifti_of(grid, type, surface_hu)));
+    else if (name.ends_with(".nii")) file::write_whole_file(path, nifti_of(grid, type, surface_hu));
     else throw Error(fmt::format("{}: a volume is written as .nrrd, .nii or .nii.gz", path.string()));
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -16,10 +17,11 @@ namespace tactus::volume {
 enum class WrittenType { int16, float32 };
 
 /// Writes a grid (LPS, m) as NRRD (.nrrd: LPS, mm, gzip) or NIfTI-1 (.nii, .nii.gz: RAS, mm; the order of the samples
-/// is kept, and the header states their directions). int16 values are rounded and clamped. Written atomically. Throws
-/// Error for other extensions, for more than 32767 samples along an axis of a NIfTI file, and when the file cannot be
-/// written.
-void write_volume(const Grid& grid, WrittenType type, const std::filesystem::path& path);
+/// is kept, and the header states their directions). int16 values are rounded and clamped. `surface_hu`: written under
+/// surface_hu_key. Written atomically. Throws Error for other extensions, for more than 32767 samples along an axis of
+/// a NIfTI file, and when the file cannot be written.
+void write_volume(const Grid& grid, WrittenType type, const std::filesystem::path& path,
+                  std::optional<double> surface_hu = {});
 
 /// Writes a label map as NRRD (.nrrd: LPS, mm, gzip, one byte per sample), with names and colours of its segments as
 /// 3D Slicer stores them, so that it reads a file .seg.nrrd as a segmentation. `layout`: size, origin and spacing; its

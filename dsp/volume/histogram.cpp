@@ -34,15 +34,16 @@ void add_values(Histogram& histogram, std::span<const float> values) {
     }
 }
 
-std::size_t otsu(const Histogram& histogram, std::size_t first) {
+std::size_t otsu(const Histogram& histogram, std::size_t first, std::size_t end) {
+    end = std::min(end, histogram.counts.size());
     double all = 0.0, sum = 0.0;
-    for (std::size_t n = first; n < histogram.counts.size(); ++n) {
+    for (std::size_t n = first; n < end; ++n) {
         all += static_cast<double>(histogram.counts[n]);
         sum += static_cast<double>(histogram.counts[n]) * histogram.middle(n);
     }
     double below = 0.0, sum_below = 0.0, best = -1.0;
     std::size_t border = first;
-    for (std::size_t n = first; n + 1 < histogram.counts.size(); ++n) {
+    for (std::size_t n = first; n + 1 < end; ++n) {
         below += static_cast<double>(histogram.counts[n]);
         sum_below += static_cast<double>(histogram.counts[n]) * histogram.middle(n);
         const double above = all - below;
@@ -54,11 +55,42 @@ std::size_t otsu(const Histogram& histogram, std::size_t first) {
     return border;
 }
 
-double suggested_threshold(const Histogram& histogram, bool masked) {
-    if (!masked) {
-        const std::size_t border = otsu(histogram, otsu(histogram));
-        return histogram.low + static_cast<double>(border) * histogram.width();
+namespace {
+
+/// Mean of the values in the bins [first, end); the lower edge of `first` if they are empty.
+double mean_of(const Histogram& histogram, std::size_t first, std::size_t end) {
+    double count = 0.0, sum = 0.0;
+    for (std::size_t n = first; n < end; ++n) {
+        count += static_cast<double>(histogram.counts[n]);
+        sum += static_cast<double>(histogram.counts[n]) * histogram.middle(n);
     }
+    return count > 0.0 ? sum / count : histogram.low + static_cast<double>(first) * histogram.width();
+}
+
+double edge_of(const Histogram& histogram, std::size_t bin) {
+    return histogram.low + static_cast<double>(bin) * histogram.width();
+}
+
+}  // namespace
+
+TissueSplit split_hu(const Histogram& histogram) {
+    std::size_t end = histogram.counts.size();
+    while (end > 0 && histogram.middle(end - 1) > min_metal_hu) --end;
+    TissueSplit split;
+    std::size_t first = 0, border = otsu(histogram, 0, end);
+    while (border > first && mean_of(histogram, first, border) < max_air_hu) {
+        split.has_air = true;
+        first = border;
+        border = otsu(histogram, first, end);
+    }
+    split.has_soft_tissue = border > first && mean_of(histogram, first, border) < max_soft_tissue_hu;
+    split.threshold = edge_of(histogram, border);
+    return split;
+}
+
+double split_scanner_values(const Histogram& histogram) { return edge_of(histogram, otsu(histogram, otsu(histogram))); }
+
+double half_of_median(const Histogram& histogram) {
     std::uint64_t above = 0, seen = 0;
     for (std::size_t n = 0; n < histogram.counts.size(); ++n)
         if (histogram.middle(n) > histogram.width()) above += histogram.counts[n];

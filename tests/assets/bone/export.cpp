@@ -2,6 +2,7 @@
 #include "assets/bone/export.hpp"
 
 #include "assets/bone/from_hu.hpp"
+#include "assets/bone/import.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
@@ -143,6 +144,61 @@ TEST_CASE("an exported NRRD has the bone's place, and its threshold gives the cu
         off.push_back(std::abs(std::max(glm::length(v - far_off) - 8.0 * mm, v.z - far_off.z - 3.0 * mm)));
     std::sort(off.begin(), off.end());
     CHECK(off[off.size() * 95 / 100] < 0.15 * 0.5 * mm);
+}
+
+TEST_CASE("export and import give the same bone: each format, voxel size, density and threshold") {
+    const TemporaryFolder folder;
+    // A shell of cortical bone around cancellous bone, in muscle or in air.
+    for (const Vec3& voxel : {Vec3(0.4), Vec3(1.0), Vec3(0.8, 0.8, 1.6)})
+        for (const double threshold : {150.0, 300.0, 620.0})
+            for (const double cortex : {700.0, 1600.0})
+                for (const double around : {50.0, -1000.0}) {
+                    // Less than a fifth of the contrast: the surface lies in the middle of the shell.
+                    if (threshold > 600.0 && cortex < 1000.0) continue;
+                    volume::Grid hu{{}, {}, voxel * mm, {}};
+                    for (std::size_t a = 0; a < 3; ++a)
+                        hu.size[a] = static_cast<int>(34.0 / voxel[static_cast<int>(a)]) + 1;
+                    hu.origin = -0.5 * Vec3(hu.size[0] - 1, hu.size[1] - 1, hu.size[2] - 1) * hu.spacing;
+                    for (int k = 0; k < hu.size[2]; ++k)
+                        for (int j = 0; j < hu.size[1]; ++j)
+                            for (int i = 0; i < hu.size[0]; ++i) {
+                                const Vec3 p = hu.position(i, j, k) / mm;
+                                const double r = glm::length(p);
+                                const auto part = [r](double radius) {
+                                    return std::clamp((radius - r) / 1.5 + 0.5, 0.0, 1.0);
+                                };
+                                double value = around + part(13.0) * (cortex - around);
+                                value += part(9.0) * (180.0 - value);
+                                hu.values.push_back(static_cast<float>(value));
+                            }
+                    const bone::Bone bone = bone::bone_from_hu(hu, {static_cast<float>(threshold), 1, true}).bone;
+                    const double before = mesh::volume_of(mesh::surface_of(bone.distance));
+                    for (const char* name : {"bone.nrrd", "bone.nii", "bone.nii.gz"}) {
+                        volume::write_volume(bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::hu),
+                                             volume::WrittenType::int16, folder / name, bone::surface_hu({&bone, 1}));
+                        bone::ImportOptions options;
+                        options.input = folder / name;
+                        bone::ImportSummary found;
+                        const bone::Bone again = bone::import_bone(options, {}, &found);
+                        CAPTURE(voxel.x, voxel.z, threshold, cortex, around, name);
+                        CHECK(*found.threshold.hu == threshold);
+                        CHECK_THAT(found.threshold.from, ContainsSubstring("exported bone"));
+                        CHECK(mesh::volume_of(mesh::surface_of(again.distance)) == Approx(before).epsilon(0.02));
+                    }
+                }
+}
+
+TEST_CASE("the stated surface of an exported bone does not apply to values that are rescaled") {
+    const TemporaryFolder folder;
+    const bone::Bone bone = cut_ball();
+    volume::Grid hu = bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::hu);
+    volume::write_volume(hu, volume::WrittenType::int16, folder / "ball.nrrd", bone::surface_hu({&bone, 1}));
+    bone::ImportOptions options;
+    options.input = folder / "ball.nrrd";
+    options.rescale = {1.1, 0.0};
+    bone::ImportSummary found;
+    bone::import_bone(options, {}, &found);
+    CHECK_THAT(found.threshold.from, !ContainsSubstring("exported bone"));
 }
 
 TEST_CASE("an exported NIfTI holds the same samples with the axes of RAS in its header") {

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 using namespace tactus;
@@ -43,6 +44,34 @@ bone::ImportSummary summary_of(const WrittenVolume& v, bone::ImportOptions optio
     bone::ImportSummary summary;
     bone::import_bone(options, {}, &summary);
     return summary;
+}
+
+// A limb along z: a ball of bone of 12 mm radius (cortex of 3 mm, cancellous bone in it), muscle to 28 mm, fat to
+// 32 mm, air.
+struct Limb {
+    bool has_soft_tissue = true, has_metal = false;
+    double half = 36.0;  // mm: half of the square that is kept of each slice
+    double half_z = 15.0;
+};
+
+constexpr double bone_radius = 12.0;
+const double bone_mm3 = 4.0 / 3.0 * std::numbers::pi * std::pow(bone_radius, 3);
+
+WrittenVolume limb(const Limb& how) {
+    WrittenVolume v;
+    const int side = static_cast<int>(2.0 * how.half);
+    v.size = {side, side, static_cast<int>(2.0 * how.half_z)};
+    v.origin = Vec3(0.5 - how.half, 0.5 - how.half, 0.5 - how.half_z);
+    v.fill([&](const Vec3& p) {
+        const double r = glm::length(p), from_axis = std::hypot(p.x, p.y);
+        if (how.has_metal && glm::length(p - Vec3(0.0, 5.0, 0.0)) < 2.5) return 12000.0;
+        const auto part = [r](double radius) { return std::clamp((radius - r) / 0.8 + 0.5, 0.0, 1.0); };
+        double hu = how.has_soft_tissue && from_axis < 32.0 ? (from_axis < 28.0 ? 50.0 : -90.0) : -1000.0;
+        // Denser towards the middle of the cortex, as it is.
+        hu += part(bone_radius) * (1000.0 + 500.0 * std::cos(r - 10.5) - hu);
+        return hu + part(9.0) * (350.0 - hu);
+    });
+    return v;
 }
 
 std::string without_units(std::string header) {
@@ -107,6 +136,47 @@ TEST_CASE("the suggested threshold is that of the whole volume: cropped, resampl
     for (auto& value : numbers.hu) value = static_cast<std::int16_t>(value + 1024);
     options.rescale = {1.0, -1024.0};
     CHECK(*summary_of(numbers, options).threshold.hu == whole);
+}
+
+TEST_CASE("the suggested threshold keeps the bone, whatever the crop of the file leaves around it") {
+    for (const bool has_metal : {false, true})
+        for (const bool has_soft_tissue : {true, false})
+            for (const double half : {36.0, 32.0, 28.0, 24.0, 20.0, 17.0, 15.0, 13.0}) {
+                const WrittenVolume v = limb({has_soft_tissue, has_metal, half, 15.0});
+                bone::ImportOptions options;
+                options.rescale = {1.0, 0.0};
+                const bone::ImportSummary found = summary_of(v, options);
+                CAPTURE(has_metal, has_soft_tissue, half, *found.threshold.hu, found.threshold.from);
+                CHECK(found.bone_volume_mm3 == Approx(bone_mm3).epsilon(0.06));
+                CHECK(*found.threshold.hu >= 100.0);
+                CHECK(*found.threshold.hu < 800.0);
+            }
+}
+
+TEST_CASE("a block of bone alone is taken whole: its threshold does not split cortical from cancellous bone") {
+    WrittenVolume v = limb({true, false, 6.0, 6.0});
+    bone::ImportOptions options;
+    options.rescale = {1.0, 0.0};
+    const bone::ImportSummary found = summary_of(v, options);
+    CHECK(found.bone_volume_mm3 == Approx(12.0 * 12.0 * 12.0).epsilon(0.03));
+    CHECK_THAT(found.threshold.from, ContainsSubstring("no soft tissue"));
+}
+
+TEST_CASE("air with lungs, and padding below air, are split off before bone") {
+    for (const double lowest : {-1000.0, -3024.0}) {
+        WrittenVolume v = limb({});
+        for (int k = 0; k < v.size[2]; ++k)
+            for (int j = 0; j < v.size[1]; ++j)
+                for (int i = 0; i < v.size[0]; ++i) {
+                    const Vec3 p = v.position(i, j, k);
+                    auto& hu = v.hu[static_cast<std::size_t>((k * v.size[1] + j) * v.size[0] + i)];
+                    if (std::hypot(p.x - 20.0, p.y) < 7.0) hu = -820;
+                    if (std::hypot(p.x, p.y) > 35.0) hu = static_cast<std::int16_t>(lowest);
+                }
+        const bone::ImportSummary found = summary_of(v);
+        CAPTURE(lowest, *found.threshold.hu);
+        CHECK(found.bone_volume_mm3 == Approx(bone_mm3).epsilon(0.06));
+    }
 }
 
 TEST_CASE("a scan of soft tissue gives no bone: its threshold is 300 HU, not one between fat and muscle") {

@@ -69,11 +69,11 @@ geometry::TriangleSurface view_surface(const volume::Grid& grid, float iso, floa
     return geometry::surface_net(coarse, iso, true);
 }
 
-void inspect_ct(Inspection& found, volume::HuKind hu) {
+void inspect_ct(Inspection& found, volume::HuKind hu, std::optional<double> stated) {
     const volume::Grid& grid = found.grey;
     volume::Histogram histogram = bone::threshold_histogram(found.range[0], found.range[1]);
     volume::add_values(histogram, grid.values);
-    const bone::CtThreshold threshold = bone::suggested_threshold(histogram, hu);
+    const bone::CtThreshold threshold = bone::suggested_threshold(histogram, hu, stated);
     found.threshold = threshold.value;
     found.threshold_from = threshold.how;
     const auto iso = static_cast<float>(*found.threshold);
@@ -172,7 +172,7 @@ Inspection inspect_volume(const std::filesystem::path& path, const InspectionOpt
     found.unit_question = volume::unit_question(about);
     found.unit = found.unit_question.empty() ? "mm" : "";
     if (about.kind == volume::VolumeKind::labels) inspect_segments(found, *reader);
-    else inspect_ct(found, about.hu);
+    else inspect_ct(found, about.hu, options.rescale ? std::nullopt : about.surface_hu);
     return found;
 }
 

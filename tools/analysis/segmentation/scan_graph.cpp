@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace tactus::analysis {
 
@@ -54,6 +55,7 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
         throw Error(fmt::format("{}: this is a label map; segment reads a CT", file));
     ScanGraph out;
     out.hu = read.hu;
+    const std::optional<double> stated = read.surface_hu;
     out.notes = read.notes;
     if (is_turned(read))
         out.notes.push_back(
@@ -69,7 +71,7 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
         volume::Histogram histogram =
             bone::threshold_histogram(static_cast<double>(range.low), static_cast<double>(range.high));
         volume::add_values(histogram, out.scan.values);
-        const bone::CtThreshold found = bone::suggested_threshold(histogram, out.hu);
+        const bone::CtThreshold found = bone::suggested_threshold(histogram, out.hu, stated);
         out.threshold = found.exact;
         out.threshold_from = found.how;
     }

@@ -68,9 +68,9 @@ file::Json export_mesh(const std::vector<bone::Bone>& bones, const std::filesyst
 file::Json export_volume(const std::vector<bone::Bone>& bones, const ExportChoice& choice) {
     const bone::BoneQuantity quantity = quantity_of(choice.quantity);
     const volume::Grid volume = bone::volume_of_bones(bones, quantity);
-    volume::write_volume(volume,
-                         quantity == bone::BoneQuantity::hu ? volume::WrittenType::int16 : volume::WrittenType::float32,
-                         choice.out);
+    if (quantity == bone::BoneQuantity::hu)
+        volume::write_volume(volume, volume::WrittenType::int16, choice.out, bone::surface_hu(bones));
+    else volume::write_volume(volume, volume::WrittenType::float32, choice.out);
     const Vec3 h = volume.spacing * 1e3;
     return {{"quantity", choice.quantity}, {"size", volume.size}, {"spacing_mm", {h.x, h.y, h.z}}};
 }
