@@ -2,6 +2,7 @@
 #include "assets/table/log_columns.hpp"
 
 #include "assets/table/clock_time.hpp"
+#include "assets/table/csv_field.hpp"
 #include "assets/table/log_lines.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
@@ -19,6 +20,13 @@
 namespace tactus::table {
 
 namespace {
+
+/// "t, \"acc, x (g)\"": a name with a comma is quoted, so that the list can be read.
+std::string list_of(const std::vector<std::string>& names) {
+    std::vector<std::string> quoted;
+    for (const std::string& name : names) quoted.push_back(csv_field(name));
+    return fmt::format("{}", fmt::join(quoted, ", "));
+}
 
 class Chooser {
 public:
@@ -47,12 +55,23 @@ private:
         throw Error(SourceLocation{file_, line, 1}, message);
     }
 
+    bool is_name(std::string_view text) const {
+        return std::ranges::find(shape_.names, text) != shape_.names.end() ||
+               std::ranges::find(out_.named, text, &NamedColumn::name) != out_.named.end();
+    }
+
+    /// The names for this file in the text of an option.
+    std::vector<std::string> wanted_in(const std::string& text) const {
+        std::vector<std::string> names = names_in(text, [this](std::string_view name) { return is_name(name); });
+        if (!selection_.list_entry) return names;
+        return {names[std::min(*selection_.list_entry, names.size() - 1)]};
+    }
+
     std::size_t find(const std::string& wanted, const char* what) const {
         const std::vector<std::string>& names = shape_.names;
         const auto found = std::find(names.begin(), names.end(), wanted);
         if (std::count(names.begin(), names.end(), wanted) > 1)
-            fail(fmt::format("there are several columns '{}'; choose by number, from 1: {}", wanted,
-                             fmt::join(names, ", ")));
+            fail(fmt::format("there are several columns '{}'; choose by number, from 1: {}", wanted, list_of(names)));
         if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
         const auto bare = std::ranges::find(out_.named, wanted, &NamedColumn::name);
         if (bare != out_.named.end()) return static_cast<std::size_t>(bare - out_.named.begin());
@@ -62,8 +81,9 @@ private:
             return number - 1;
         std::vector<std::string> known = names;
         for (const NamedColumn& column : out_.named) known.push_back(column.name);
-        fail(fmt::format("there is no {} '{}'{}; there are {}", what, wanted, did_you_mean(wanted, known),
-                         fmt::join(names, ", ")));
+        fail(fmt::format(
+            "there is no {} '{}'{}; there are {}{}", what, wanted, did_you_mean(wanted, known), list_of(names),
+            selection_.list_entry ? "; names that differ between the files are stated as REFERENCE,OUTPUT" : ""));
     }
 
     bool can_be_time(std::size_t i) const {
@@ -88,7 +108,7 @@ private:
             out_.rate = *selection_.rate;
             return;
         }
-        if (!selection_.time_column.empty()) out_.time = find(selection_.time_column, "time column");
+        if (!selection_.time_column.empty()) out_.time = find(time_column(), "time column");
         else out_.time = found_time();
         if (!out_.time && shape_.rate) {
             out_.rate = shape_.rate->value;
@@ -102,8 +122,14 @@ private:
             fail(
                 fmt::format("no column name contains a time; name the column with --time-column, or state the rate of "
                             "the rows, as --sample-rate \"3.2 kHz\"; there are {}",
-                            fmt::join(shape_.names, ", ")));
+                            list_of(shape_.names)));
         choose_time_unit();
+    }
+
+    std::string time_column() const {
+        const std::vector<std::string> names = wanted_in(selection_.time_column);
+        if (names.size() > 1) fail(fmt::format("--time-column names {} columns; one is needed", names.size()));
+        return names.front();
     }
 
     void choose_time_unit() {
@@ -198,12 +224,26 @@ public:
     }
 
 private:
+    /// The '=' behind the name of a column, which may contain others; the first one if there is no such name.
+    std::size_t sign_of_where() const {
+        const std::string& where = selection_.where;
+        for (std::size_t at = where.find('='); at != std::string::npos; at = where.find('=', at + 1))
+            if (const std::vector<std::string> names =
+                    names_in(where.substr(0, at), [this](std::string_view name) { return is_name(name); });
+                names.size() == 1 && is_name(names.front()))
+                return at;
+        return where.find('=');
+    }
+
     void choose_sources() {
         if (!selection_.where.empty()) {
-            const std::size_t sign = selection_.where.find('=');
+            const std::size_t sign = sign_of_where();
             if (sign == std::string::npos)
                 throw Error(fmt::format("{}: --where needs COLUMN=VALUE, not '{}'", file_, selection_.where));
-            out_.where = find(selection_.where.substr(0, sign), "column");
+            const std::string column = selection_.where.substr(0, sign);
+            const std::vector<std::string> names =
+                names_in(column, [this](std::string_view name) { return is_name(name); });
+            out_.where = find(names.size() == 1 ? names.front() : column, "column");
             out_.wanted = selection_.where.substr(sign + 1);
         }
         if (shape_.header_line == 0) return;
@@ -235,7 +275,8 @@ private:
     }
 
     void choose_values() {
-        for (const std::string& wanted : selection_.columns) out_.values.push_back(find(wanted, "column"));
+        for (const std::string& text : selection_.columns)
+            for (const std::string& wanted : wanted_in(text)) out_.values.push_back(find(wanted, "column"));
         if (!out_.values.empty()) return;
         std::vector<std::size_t> numbers, accelerations, counters;
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
@@ -268,7 +309,7 @@ private:
             for (const std::size_t i : numbers) all.push_back(std::to_string(i + 1));
             fail(fmt::format("choose columns with --column{}; there are {}",
                              all.empty() ? "" : fmt::format(", as --column {}", fmt::join(all, ",")),
-                             fmt::join(shape_.names, ", ")));
+                             list_of(shape_.names)));
         }
     }
 
@@ -280,6 +321,29 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::string> names_in(std::string_view text, const std::function<bool(std::string_view)>& is_name) {
+    if (is_name(text)) return {std::string(text)};
+    std::vector<std::string> names;
+    for (std::size_t at = 0;; ++at) {
+        std::string name;
+        at = std::min(text.find_first_not_of(' ', at), text.size());
+        if (at < text.size() && text[at] == '"') {
+            for (++at; at < text.size(); ++at) {
+                if (text[at] == '"' && text.substr(at + 1, 1) == "\"") ++at;
+                else if (text[at] == '"') break;
+                name += text[at];
+            }
+            at = std::min(text.find(',', at), text.size());
+        } else {
+            const std::size_t end = std::min(text.find(',', at), text.size());
+            name = trimmed(text.substr(at, end - at));
+            at = end;
+        }
+        names.push_back(std::move(name));
+        if (at == text.size()) return names;
+    }
+}
 
 bool is_source_name(std::string_view name) { return Chooser::names_source(name); }
 

@@ -30,6 +30,29 @@ std::optional<std::size_t> channel_named(const std::vector<RecordedChannel>& cha
     return is_number && number >= 1 && number <= channels.size() ? std::optional(number - 1) : std::nullopt;
 }
 
+/// The same with a name in each of its columns: lists are taken apart.
+LogSelection with_single_names(const LogSelection& selection, const std::vector<RecordedChannel>& channels) {
+    const auto is_name = [&](std::string_view name) {
+        return std::ranges::any_of(channels, [&](const RecordedChannel& channel) {
+            return channel.name == name || parse_column_name(channel.name).name == name;
+        });
+    };
+    const auto names_of = [&](const std::string& text) {
+        std::vector<std::string> names = names_in(text, is_name);
+        if (selection.list_entry) names = {names[std::min(*selection.list_entry, names.size() - 1)]};
+        return names;
+    };
+    LogSelection single = selection;
+    single.columns.clear();
+    for (const std::string& text : selection.columns)
+        for (std::string& name : names_of(text)) single.columns.push_back(std::move(name));
+    if (!selection.time_column.empty())
+        if (const std::vector<std::string> names = names_of(selection.time_column); names.size() == 1)
+            single.time_column = names.front();
+    single.list_entry.reset();
+    return single;
+}
+
 /// The group of the chosen channels, or that with a column of times, or the only one.
 std::size_t group_of(const Recording& recording, const std::string& file, const LogSelection& selection) {
     const std::vector<RecordedChannel>& channels = recording.channels;
@@ -58,7 +81,8 @@ std::size_t group_of(const Recording& recording, const std::string& file, const 
 
 }  // namespace
 
-SampleLog log_of_recording(const Recording& recording, const std::string& file, const LogSelection& selection) {
+SampleLog log_of_recording(const Recording& recording, const std::string& file, const LogSelection& given) {
+    const LogSelection selection = with_single_names(given, recording.channels);
     const std::size_t group = group_of(recording, file, selection);
     std::vector<const RecordedChannel*> channels;
     LogShape shape;

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,13 +17,22 @@ namespace tactus::table {
 
 struct LogSelection {
     std::string time_column;           ///< name or number from 1; empty: the first whose name indicates time
-    std::vector<std::string>
-        columns;  ///< names or numbers from 1; empty: the only other column, or those named like axes
+    /// Each a name, a number from 1, or a list of them as names_in() reads it; empty: the only other column, or those
+    /// named like axes.
+    std::vector<std::string> columns;
+    /// Position in a list of names for several files: of each list only this entry, or its last one, is for this file.
+    /// The time column is then such a list too. None: all entries are for this file.
+    std::optional<std::size_t> list_entry = std::nullopt;
     std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the names, else the only plausible one
     std::optional<int> skip_rows = std::nullopt;  ///< lines before the names; none: found
     std::optional<double> rate = std::nullopt;    ///< Hz: rows follow at this rate, no time column is read
     std::string where{};  ///< "SENSOR=2": only rows with this value in this column; empty: all rows
 };
+
+/// The column names in the text of an option. The text is one name if `is_name` accepts it, commas included; otherwise
+/// a list separated by commas. Double quotes keep the commas of a name, and "" within them is a quote, as in CSV
+/// (RFC 4180): ax,"acc, x (g)". The exact name is tried first, so that a name copied from the file needs no quotes.
+std::vector<std::string> names_in(std::string_view text, const std::function<bool(std::string_view)>& is_name);
 
 /// What was understood of the form of a log, so that a wrong guess is seen.
 struct LogForm {

@@ -150,6 +150,22 @@ TEST_CASE("a universal file of several datasets gives the functions of time, and
               ->text == "m/s^2");
 }
 
+TEST_CASE("channels of a recording are named in lists like columns, also those with a comma in their name") {
+    const Recordings place;
+    test::UniversalFunction x, y;
+    x.values = wave(40), x.node = 12;
+    y = x, y.node = 13;
+    const std::string both = test::universal_function(x) + test::universal_function(y);
+    table::LogSelection how;
+    how.columns = {"12Z+,13Z+"};
+    CHECK(place.load("a.unv", both, how).names == std::vector<std::string>{"12Z+", "13Z+"});
+    how.columns = {"\"13Z+\",1"};
+    CHECK(place.load("a.unv", both, how).names == std::vector<std::string>{"13Z+", "12Z+"});
+    how.list_entry = 1;
+    how.columns = {"12Z+,13Z+"};
+    CHECK(place.load("a.unv", both, how).names == std::vector<std::string>{"13Z+"});
+}
+
 TEST_CASE("a universal file cut anywhere is refused or loses nothing that it states") {
     const Recordings place;
     for (const bool is_binary : {false, true}) {

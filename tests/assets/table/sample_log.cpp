@@ -42,6 +42,59 @@ TEST_CASE(
     CHECK(read("t,a\n1000000,7\n2000000,8\n", selection).times == std::vector{1.0, 2.0});
 }
 
+TEST_CASE("a column whose name contains commas is named whole, without its unit, quoted in a list, or by number") {
+    const std::string text =
+        "\"time, s\",\"acc, x (g)\",\"acc, y (g)\",\"unit=a, of\",acc\n0,1,2,7,3\n1,4,5,8,6\n2,4,5,7,6\n";
+    const auto values = [&](const std::vector<std::string>& columns, const std::string& where = "",
+                            const std::string& time = "time, s") {
+        table::LogSelection selection;
+        selection.columns = columns;
+        selection.time_column = time;
+        selection.time_unit = "s";
+        selection.where = where;
+        const table::SampleLog log = read(text, selection);
+        std::string all;
+        for (const std::string& name : log.names) all += name + "|";
+        return all;
+    };
+    CHECK(values({"acc, x (g)"}) == "acc, x|");
+    CHECK(values({"acc, x"}) == "acc, x|");
+    CHECK(values({"acc, x (g)", "acc"}) == "acc, x|acc|");
+    CHECK(values({"\"acc, x (g)\",acc"}) == "acc, x|acc|");
+    CHECK(values({"acc,\"acc, y (g)\""}) == "acc|acc, y|");
+    CHECK(values({"acc, \"acc, y\", 2"}) == "acc|acc, y|acc, x|");
+    CHECK(values({"2,3"}) == "acc, x|acc, y|");
+    CHECK(values({"acc"}, "unit=a, of=7") == "acc|");
+    CHECK(values({"acc"}, "\"unit=a, of\"=7") == "acc|");
+    CHECK(values({"acc"}, "", "\"time, s\"") == "acc|");
+    CHECK(values({"acc"}, "", "1") == "acc|");
+    table::LogSelection selection;
+    selection.where = "unit=a, of=7";
+    selection.time_column = "time, s", selection.time_unit = "s", selection.columns = {"acc"};
+    CHECK(read(text, selection).times == std::vector{0.0, 2.0});
+    using Catch::Matchers::ContainsSubstring;
+    CHECK_THROWS_WITH(values({"acc, z"}), ContainsSubstring("there is no column 'z'") &&
+                                              ContainsSubstring("there are \"time, s\", \"acc, x (g)\", \"acc, y"));
+    CHECK_THROWS_WITH(values({"acc, x,acc"}), ContainsSubstring("there is no column 'x'"));
+    CHECK_THROWS_WITH(values({"acc,"}), ContainsSubstring("there is no column ''"));
+    CHECK_THROWS_WITH(values({"acc"}, "", "1,2"), ContainsSubstring("--time-column names 2 columns"));
+}
+
+TEST_CASE("of a list for two files each takes its own name, and a name that both have is one name") {
+    using Catch::Matchers::ContainsSubstring;
+    table::LogSelection selection;
+    selection.columns = {"a,b"};
+    selection.list_entry = 0;
+    CHECK(read("t_s,a,b\n0,1,2\n1,3,4\n", selection).names.front() == "a");
+    selection.list_entry = 1;
+    CHECK(read("t_s,a,b\n0,1,2\n1,3,4\n", selection).names.front() == "b");
+    CHECK(read("t_s,\"a,b\"\n0,1\n1,3\n", selection).names.front() == "a,b");
+    selection.columns = {"a"};
+    CHECK(read("t_s,a,b\n0,1,2\n1,3,4\n", selection).names.front() == "a");
+    CHECK_THROWS_WITH(read("t_s,c,d\n0,1,2\n", selection),
+                      ContainsSubstring("l.csv:1:1: there is no column 'a'") && ContainsSubstring("REFERENCE,OUTPUT"));
+}
+
 TEST_CASE("a number that may have a thousands separator is refused, one that cannot is read") {
     using Catch::Matchers::ContainsSubstring;
     CHECK_THROWS_WITH(read("t,a\n0,\"1,234\"\n1,\"2,345\"\n"), ContainsSubstring("'1,234' may be 1234 or 1.234"));

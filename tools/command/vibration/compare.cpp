@@ -31,7 +31,7 @@ struct CompareChoice {
     fs::path plot, table;                            // a figure, .csv
     ResultChoice result;
     std::string touch = "displacement", axes = "strongest";
-    std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
+    std::string time_column, column;                 // of CSV logs, for both files or for each: REFERENCE,OUTPUT
     std::string where;                               // rows of CSV logs
     std::string time_unit, band;                     // band: LOW:HIGH in Hz, of figures
     StretchChoice stretch;
@@ -42,12 +42,10 @@ struct CompareChoice {
 
 /// One column name is for both files; of two, the first is for the reference and the second for the output.
 table::LogSelection selection_for(const CompareChoice& choice, std::size_t file) {
-    const auto pick = [file](const std::vector<std::string>& names) {
-        return names.empty() ? std::string() : names[std::min(file, names.size() - 1)];
-    };
     table::LogSelection selection;
-    selection.time_column = pick(choice.time_columns);
-    if (!choice.columns.empty()) selection.columns = {pick(choice.columns)};
+    selection.time_column = choice.time_column;
+    if (!choice.column.empty()) selection.columns = {choice.column};
+    selection.list_entry = file;
     selection.time_unit = choice.time_unit;
     selection.where = choice.where;
     selection.skip_rows = choice.skip_rows;
@@ -142,15 +140,11 @@ Action declare_compare(VerbOptions& verb) {
              "of squares of the spectra of all")
         .shows_default()
         .one_of({"strongest", "vector"});
-    verb.add("--time-column", choice->time_columns,
-             "time column of CSV logs: name or number, for both files or for each")
-        .separated_by(',')
-        .count(1, 2)
-        .one_each();
-    verb.add("--column", choice->columns, "compared column of CSV logs: name or number, for both files or for each")
-        .separated_by(',')
-        .count(1, 2)
-        .one_each();
+    verb.add("--time-column", choice->time_column,
+             "time column of CSV logs: name or number, for both files or for each as REFERENCE,OUTPUT");
+    verb.add("--column", choice->column,
+             "compared column of CSV logs: name or number, for both files or for each as REFERENCE,OUTPUT; a name that "
+             "contains a comma is stated alone or in double quotes");
     verb.add("--time-unit", choice->time_unit, "unit of time in CSV logs: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
     verb.add("--where", choice->where,

@@ -18,8 +18,9 @@ void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* fil
         "of the sensor whose volts were recorded, such as \"100 mV/g\"; the volts are in the header or --calibration");
     verb.add("--channel", choice.record.channels, "channels to analyse, from 1").separated_by(',').one_each();
     verb.add("--time-column", choice.record.log.time_column, "time column of a CSV log: name or number");
-    verb.add("--column", choice.record.log.columns, "columns of a CSV log to analyse: names or numbers")
-        .separated_by(',')
+    verb.add("--column", choice.record.log.columns,
+             "columns of a CSV log to analyse: names or numbers, separated by commas; a name that contains a comma is "
+             "stated alone or in double quotes")
         .one_each();
     verb.add("--time-unit", choice.record.log.time_unit, "unit of time in a CSV log: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});

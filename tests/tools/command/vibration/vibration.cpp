@@ -351,6 +351,17 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     const Outcome none = folder.tactus("compare " + whole + " " + wave + " --column nothing");
     CHECK(none.code == 2);
     CHECK(none.err.find("nothing") != std::string::npos);
+    // The column of only one file.
+    const Outcome one = folder.tactus("compare " + whole + " " + parted + " --time-unit ms --column accel");
+    CHECK(one.code == 2);
+    CHECK(one.err.find("b.csv:1:1: there is no column 'accel'; there are when_ms, flag, value; names that differ "
+                       "between the files are stated as REFERENCE,OUTPUT") != std::string::npos);
+    const std::string quoted = log("c.csv", "time_ms,flag,\"acc, x (m/s^2)\"\n", 0.0, 6.0, 0.0);
+    compared(folder, whole + " " + quoted + " --column 'accel,\"acc, x (m/s^2)\"'", 0);
+    compared(folder, quoted + " " + quoted + " --column 'acc, x'", 0);
+    const Outcome spectrum = folder.tactus("spectrum " + quoted + " --column 'acc, x (m/s^2)'");
+    CHECK(spectrum.code == 0);
+    CAPTURE(spectrum.err);
 }
 
 TEST_CASE("a chain saw is not the same as silence, and each score says in which band it was judged") {
