@@ -6,6 +6,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
+#include "tools/analysis/experiment/experiment_folder.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -136,9 +137,9 @@ void write_bids(const ExperimentAnalysis& analysis, const fs::path& folder) {
                            {"GeneratedBy", Json::array({{{"Name", "tactus experiment analyse"}}})}};
     file::write_whole_file(folder / "dataset_description.json", description.dump(2) + "\n");
     // What is not of the standard: validators leave it out.
-    file::write_whole_file(
-        folder / ".bidsignore",
-        "frozen/\nexperiment.json\nreport.*\nresults.*\nmixed/\nsub-*/trials.jsonl\nsub-*/trial-*\n");
+    std::string ignored = "frozen/\nexperiment.json\n";
+    for (const std::string_view stem : result_stems) ignored += fmt::format("{}.*\n", stem);
+    file::write_whole_file(folder / ".bidsignore", ignored + "mixed/\nsub-*/trials.jsonl\nsub-*/trial-*\n");
     // A laboratory may have written its own.
     if (!fs::exists(folder / "README"))
         file::write_whole_file(

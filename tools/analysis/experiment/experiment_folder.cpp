@@ -97,6 +97,12 @@ std::string first_difference(const std::string& before, const std::string& now) 
 
 }  // namespace
 
+bool is_experiment_result(std::string_view name) {
+    return std::ranges::any_of(result_stems, [name](std::string_view stem) {
+        return name.starts_with(stem) && name.size() > stem.size() + 1 && name[stem.size()] == '.';
+    });
+}
+
 void check_subject_name(const std::string& name) {
     const auto is_plain = [](char c) {
         return static_cast<unsigned char>(c) < 128 && std::isalnum(static_cast<unsigned char>(c)) != 0;
@@ -267,8 +273,7 @@ void ExperimentFolder::withdraw(const std::string& pseudonym) {
     // Results of an analysis may name the subject.
     std::vector<fs::path> results{folder_ / "participants.tsv", folder_ / "mixed"};
     for (const auto& entry : fs::directory_iterator(folder_))
-        if (const fs::path stem = entry.path().stem(); stem == "report" || stem == "results")
-            results.push_back(entry.path());
+        if (is_experiment_result(entry.path().filename().string())) results.push_back(entry.path());
     for (const fs::path& result : results) {
         fs::remove_all(result, failure);
         if (failure) throw Error(fmt::format("{}: cannot be deleted: {}", result.string(), failure.message()));

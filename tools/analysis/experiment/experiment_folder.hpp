@@ -5,9 +5,11 @@
 #include "assets/experiment/protocol.hpp"
 #include "assets/experiment/records.hpp"
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::analysis {
@@ -52,6 +54,13 @@ private:
 /// The protocol that an experiment's folder keeps: analyses read that one, wherever the original is. Throws Error when the folder is
 /// none.
 experiment::Protocol frozen_protocol(const std::filesystem::path& folder);
+
+/// Beginnings of the names of results in the folder of an experiment: report.html, results.json. Every other name may be
+/// that of data.
+inline constexpr std::array<std::string_view, 2> result_stems{"report", "results"};
+/// Whether a file with this name in the folder of an experiment is a result of an analysis: it may be replaced by the
+/// next one, and a withdrawal deletes it, since it may name the subject.
+bool is_experiment_result(std::string_view name);
 
 /// Throws Error unless `name` is 1 to 40 letters and digits, as BIDS demands of a subject's label.
 void check_subject_name(const std::string& name);

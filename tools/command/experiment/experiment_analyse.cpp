@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus experiment analyse: tables, tests and a report.
-#include "tools/analysis/experiment/analysis.hpp"
-#include "tools/analysis/experiment/mixed_models.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/experiment/analysis.hpp"
+#include "tools/analysis/experiment/experiment_folder.hpp"
+#include "tools/analysis/experiment/mixed_models.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/counted.hpp"
@@ -13,6 +14,7 @@
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -31,17 +33,17 @@ struct AnalyseChoice {
     ResultChoice printed;
 };
 
-/// Within the folder only report.* and results.*: every other name may be that of data, and `withdraw` deletes these.
+/// Within the folder only names of results: every other name may be that of data, and `withdraw` deletes results.
 void check_results_in_folder(const AnalyseChoice& choice) {
     std::error_code failed;
     const fs::path folder = fs::weakly_canonical(fs::absolute(choice.folder), failed);
     for (const fs::path& out : choice.printed.out) {
         const fs::path file = fs::weakly_canonical(fs::absolute(out), failed);
         if (std::ranges::mismatch(folder, file).in1 != folder.end()) continue;
-        const std::string stem = file.stem().string();
-        if (file.parent_path() != folder || (stem != "report" && stem != "results"))
-            throw Error(fmt::format("{}: results in the folder of an experiment are named report or results, as {}",
-                                    out.string(), (choice.folder / ("report" + out.extension().string())).string()));
+        if (file.parent_path() != folder || !analysis::is_experiment_result(file.filename().string()))
+            throw Error(fmt::format("{}: results in the folder of an experiment are named {}, as {}", out.string(),
+                                    fmt::join(analysis::result_stems, " or "),
+                                    (choice.folder / ("report" + out.extension().string())).string()));
     }
 }
 

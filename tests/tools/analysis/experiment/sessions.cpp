@@ -442,8 +442,17 @@ TEST_CASE("a subject who withdraws leaves nothing, and the next one inherits the
         CHECK_THROWS_AS(ExperimentFolder(out, protocol), Error);  // in use
         fs::create_directories(folder.subject_folder("P02"));
         std::ofstream(folder.subject_folder("P02") / "trials.jsonl") << "";
+        // Results may name the subject. A folder of the laboratory is none, whatever its name begins with.
+        for (const char* name : {"report.html", "report.old.html", "results.json", "reports.txt"})
+            std::ofstream(out / name) << "P02";
+        fs::create_directories(out / "results");
         folder.withdraw("P02");
         CHECK_FALSE(fs::exists(folder.subject_folder("P02")));
+        for (const char* name : {"report.html", "report.old.html", "results.json"}) CHECK_FALSE(fs::exists(out / name));
+        for (const char* name : {"results", "reports.txt"}) CHECK(fs::exists(out / name));
+        for (const char* name : {"report.html", "report.old.html", "results.csv"}) CHECK(is_experiment_result(name));
+        for (const char* name : {"report", "results.", "reports.txt", "my-report.html"})
+            CHECK_FALSE(is_experiment_result(name));
         CHECK_THROWS_WITH(folder.withdraw("P2"), Catch::Matchers::ContainsSubstring("there is no subject"));
     }
     ExperimentFolder folder(out, protocol);
