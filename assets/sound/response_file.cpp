@@ -2,6 +2,7 @@
 #include "assets/sound/response_file.hpp"
 
 #include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
 
@@ -171,7 +172,7 @@ void save_response(const ResponseFile& file, const std::filesystem::path& path) 
         for (const vibration::Distortion& d : file.identified.distortions)
             out += std::isfinite(d.ratio[i]) ? fmt::format(",{:.3e}", d.ratio[i]) : ",";
     }
-    file::write_whole_file(path, out + "\n");
+    table::save_csv(path, out + "\n");
 }
 
 ResponseFile load_response(const std::filesystem::path& path) { return Reader(path).read(); }

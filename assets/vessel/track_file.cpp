@@ -3,6 +3,7 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/markup/markup.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/vessel/track_warnings.hpp"
 #include "dsp/vessel/tube_surface.hpp"
@@ -154,7 +155,7 @@ bool is_track_file(const std::filesystem::path& path) {
 
 void write_track(const Track& track, const std::filesystem::path& path, std::span<const std::string> warnings) {
     if (track.branches.empty()) throw Error("there is no vessel to write to " + path.string());
-    if (ends_with(path, ".csv")) return file::write_whole_file(path, csv(track));
+    if (ends_with(path, ".csv")) return table::save_csv(path, csv(track));
     if (ends_with(path, ".vtp")) return file::write_whole_file(path, vtp(track, all_warnings(track, warnings)));
     if (ends_with(path, ".mrk.json"))
         return file::write_whole_file(path, markups(track, all_warnings(track, warnings)));

@@ -80,7 +80,8 @@ public:
             line_.clear();
             fmt::format_to(std::back_inserter(line_), "{:.6f}",
                            seconds((first + static_cast<std::int64_t>(i)) * period_));
-            for (const double number : row_) fmt::format_to(std::back_inserter(line_), ",{}", number);
+            // The sum is 0 for a negative zero, which other programs show as "-0".
+            for (const double number : row_) fmt::format_to(std::back_inserter(line_), ",{}", number + 0.0);
             line_ += '\n';
             file_->append(line_);
         }

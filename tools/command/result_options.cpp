@@ -4,6 +4,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/outputs.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/report/blocks/pages.hpp"
 #include "tools/report/result/printers.hpp"
@@ -39,7 +40,7 @@ void write_file(const report::Result& result, const std::filesystem::path& out, 
     if (choice.product.has(out)) return;
     if (ending == ".txt") file::write_whole_file(out, report::text_of(result));
     else if (ending == ".json") file::write_whole_file(out, report::output_json(result).dump(2) + "\n");
-    else if (ending == ".csv") file::write_whole_file(out, report::csv_of(result));
+    else if (ending == ".csv") table::save_csv(out, report::csv_of(result));
     else if (ending == ".html") file::write_whole_file(out, report::html_of(result));
     else if (ending == ".pdf") {
         const report::Pdf pdf = report::pdf_of(report::title_of(result), report::blocks_of(result));

@@ -120,7 +120,7 @@ private:
 constexpr const char* worker_keys[] = {"version", "build", "libc", "vector", "features", "cpu", "machine", "runner"};
 
 std::string csv_text(const Cell& cell) {
-    if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
+    if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number + 0.0);  // 0, not "-0"
     if (const auto* whole = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *whole);
     if (const auto* text = std::get_if<std::string>(&cell)) return table::csv_field(*text);
     return {};

@@ -2,7 +2,7 @@
 // tactus calibrate: touched positions in, a display file out.
 #include "assets/display/touch_file.hpp"
 #include "assets/file/json.hpp"
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "devices/haptic/catalogue.hpp"
 #include "devices/hosted/hosted_device.hpp"
 #include "dsp/core/units.hpp"
@@ -87,7 +87,7 @@ int calibrate(const CalibrateChoice& choice) {
     const display::DisplayFitOptions options = analysis::fit_options(choice.settings, base);
     const std::vector<display::Touch> touches = touches_of(choice, base, options);
     // Touches are kept even if the fit fails.
-    if (!choice.keep.empty()) file::write_whole_file(choice.keep, display::touches_text(touches));
+    if (!choice.keep.empty()) table::save_csv(choice.keep, display::touches_text(touches));
     const display::DisplayFit fit = display::fit_display(touches, options);
     const analysis::TouchesOff all = analysis::touches_off(fit);
     file::Json parts = file::Json::array();

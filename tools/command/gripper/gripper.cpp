@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus gripper: measures how faithfully a gripper renders objects on the test rig.
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "tools/analysis/gripper/rig_series.hpp"
 #include "tools/analysis/gripper/rig_study.hpp"
 #include "tools/analysis/workers.hpp"
@@ -44,7 +44,7 @@ analysis::RigReport simulate(const RigChoice& choice, const analysis::RigMatrix&
     analysis::RigReport report =
         analysis::study_rig(choice.patch, matrix, analysis::on_threads(choice.threads), progress, keep);
     shown.clear();
-    if (choice.keep_series) file::write_whole_file(choice.out / "series.csv", series);
+    if (choice.keep_series) table::save_csv(choice.out / "series.csv", series);
     report.title = "Test rig: " + choice.patch.patch;
     report.source =
         fmt::format("{} motors, {} objects, {} rates and {} amplitudes on simulated grippers.", matrix.motors.size(),
@@ -71,7 +71,7 @@ int judge(const RigChoice& choice) {
     if (is_record) report = recorded(choice);
     else report = simulate(choice, matrix);
     const report::Result result = report::rig_fields().of(report);
-    file::write_whole_file(choice.out / "rig.csv", report::rig_table(report));
+    table::save_csv(choice.out / "rig.csv", report::rig_table(report));
     save_figure(report::draw_rig_errors(report), choice.out / "errors.png", choice.figure);
     if (!report.crossover.empty())
         save_figure(report::draw_rig_crossover(report), choice.out / "crossover.png", choice.figure);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus score: what an attempt at a task was like, in numbers and on a page.
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/exit_code.hpp"
@@ -41,7 +41,7 @@ int score(const ScoreChoice& choice) {
                                     runs.back().task.title));
     const std::vector<analysis::ReferenceMeasure> group =
         others.empty() ? std::vector<analysis::ReferenceMeasure>{} : analysis::reference_of(others);
-    if (!choice.csv.empty()) file::write_whole_file(choice.csv, report::score_table(runs));
+    if (!choice.csv.empty()) table::save_csv(choice.csv, report::score_table(runs));
     report::ScoredRuns found{runs, group};
     if (choice.result.shows_figures()) found.pictures = report::pictures_of(runs.back());
     write_result(report::score_result(found), choice.result);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus compare: judges whether two vibration records are equivalent, for two files or for folders.
 #include "assets/file/json.hpp"
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/result_options.hpp"
@@ -55,7 +55,7 @@ table::LogSelection selection_for(const CompareChoice& choice, std::size_t file)
 
 /// Prints and writes; returns the exit code.
 int finish(const CompareChoice& choice, const report::ComparedPairs& found) {
-    if (!choice.table.empty()) file::write_whole_file(choice.table, report::comparison_table(found));
+    if (!choice.table.empty()) table::save_csv(choice.table, report::comparison_table(found));
     write_result(report::comparison_fields().of(found), choice.result);
     const report::VerdictCounts counts = found.counts();
     return counts.bad > 0 ? bad_input : counts.failed > 0 ? answer_is_no : done;

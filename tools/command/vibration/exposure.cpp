@@ -2,7 +2,7 @@
 // tactus exposure: vibration exposure of the hand (ISO 5349-1) and of the whole body (ISO 2631-1, -4).
 #include "tools/analysis/vibration/exposure.hpp"
 #include "assets/file/json.hpp"
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/command/batch.hpp"
@@ -98,7 +98,7 @@ void write_table(const ExposureChoice& choice, const std::vector<fs::path>& file
             row["file"] = files[i].string();
             rows.push_back(std::move(row));
         }
-    file::write_whole_file(choice.table, report::csv_table(columns, rows));
+    table::save_csv(choice.table, report::csv_table(columns, rows));
 }
 
 template <class Value>

@@ -3,6 +3,8 @@
 #include "tools/analysis/vibration/orders.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/table/csv_field.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/command/vibration/record_options.hpp"
@@ -35,7 +37,7 @@ struct OrdersChoice : RecordChoice {
 std::string csv_of(const analysis::Orders& found, bool peak) {
     std::string csv = "order";
     for (const analysis::OrdersOfChannel& one : found.channels)
-        csv += fmt::format(",{}_{}", one.name, peak ? "peak" : "rms");
+        csv += "," + table::csv_field(fmt::format("{}_{}", one.name, peak ? "peak" : "rms"));
     csv += '\n';
     const signal::OrderSpectrum& first = found.channels.front().spectrum;
     for (std::size_t k = 0; k < first.amplitude.size(); ++k) {
@@ -61,7 +63,7 @@ void about_file(const std::filesystem::path& file, const Function& function) {
 void write_waterfall(const analysis::Orders& found, const std::filesystem::path& record,
                      const std::filesystem::path& out, const FigureChoice& figure) {
     if (out.extension() == ".csv") {
-        file::write_whole_file(out, waterfall_csv(found));
+        table::save_csv(out, waterfall_csv(found));
     } else if (out.extension() == ".json") {
         file::Json json{{"file", record.string()}, {"unit", found.calibration.unit}, {"channels", file::Json::array()}};
         for (const analysis::OrdersOfChannel& channel : found.channels) {
@@ -99,7 +101,7 @@ int orders(const OrdersChoice& choice) {
     others.push_back(choice.csv);
     check_result_files(result, choice.files, others);
     const analysis::Orders found = analysis::analyse_orders(file, settings);
-    if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
+    if (!choice.csv.empty()) about_file(file, [&] { table::save_csv(choice.csv, csv_of(found, choice.peak)); });
     for (const std::filesystem::path& out : choice.waterfalls)
         about_file(file, [&] { write_waterfall(found, file, out, result.figure); });
     const report::FileOrders shown{file, &found};

@@ -2,6 +2,7 @@
 // tactus response: frequency response and coherence between two channels of a record.
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "assets/sound/response_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
@@ -73,7 +74,7 @@ int response(const ResponseChoice& choice) {
     check_result_files(choice.result, choice.files, {choice.csv});
     const analysis::TwoChannels found = analysis::analyse_two_channels(file, settings, {});
     for (const std::filesystem::path& out : choice.result.products()) save(found, file.filename().string(), out);
-    if (!choice.csv.empty()) file::write_whole_file(choice.csv, csv_of(found));
+    if (!choice.csv.empty()) table::save_csv(choice.csv, csv_of(found));
     write_result(report::response_fields().of({file, &found}), choice.result);
     return done;
 }

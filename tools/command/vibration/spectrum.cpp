@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus spectrum: spectral analysis of records.
 #include "assets/file/json.hpp"
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/result_options.hpp"
 #include "tools/command/vibration/record_options.hpp"
@@ -125,8 +125,8 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, const report
     const auto output = [&](const fs::path& wanted, const char* ending) {
         return many ? wanted / (path.filename().string() + ending) : wanted;
     };
-    if (!choice.csv.empty()) file::write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
-    if (!choice.cepstrum.empty()) file::write_whole_file(output(choice.cepstrum, ".csv"), cepstrum_csv(file));
+    if (!choice.csv.empty()) table::save_csv(output(choice.csv, ".csv"), analysis_csv(file));
+    if (!choice.cepstrum.empty()) table::save_csv(output(choice.cepstrum, ".csv"), cepstrum_csv(file));
     if (!choice.plot.empty() && !overlay)
         save_figure(report::draw_spectrum(file, method.band), output(choice.plot, ".svg"), choice.result.figure);
     Outcome outcome{report::spectrum_result(file, method, choice.result.shows_figures()), {}, {}};
@@ -168,7 +168,7 @@ int spectrum(const SpectrumChoice& choice) {
         if (!is_read) table.push_back({{"file", name}, {"error", failures[i]}});
         for (file::Json& row : outcomes[i].table) table.push_back(std::move(row));
     }
-    if (!choice.table.empty()) file::write_whole_file(choice.table, report::csv_table(report::spectrum_columns, table));
+    if (!choice.table.empty()) table::save_csv(choice.table, report::csv_table(report::spectrum_columns, table));
     // Of one bad file only its error is printed.
     if (!bad || many || choice.result.json) write_result(report::spectrum_fields().of(found), choice.result);
     return bad ? bad_input : done;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus validate: compares the handle's vibration in a patch with each recording that its saw plays.
 #include "assets/file/json.hpp"
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/command/batch.hpp"
@@ -73,7 +73,7 @@ int validate(const ValidateChoice& choice) {
         if (run.failure.empty() && !choice.plot.empty())
             save_figure(report::draw_comparison(run.pair), choice.plot / (run.file_name() + ".svg"), {});
     }
-    if (!choice.table.empty()) file::write_whole_file(choice.table, report::validation_table(validation));
+    if (!choice.table.empty()) table::save_csv(choice.table, report::validation_table(validation));
     const report::ValidatedRuns found{&validation, &settings};
     write_result(report::validation_fields().of(found), choice.result);
     const report::VerdictCounts counts = found.counts();

@@ -180,7 +180,8 @@ void add_text(std::string& out, const Result& result, const std::string& indent,
     }
 }
 
-Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+/// A negative zero becomes 0.
+Json number_json(double value) { return std::isfinite(value) ? Json(value + 0.0) : Json(); }
 
 Json value_json(const ResultEntry& entry) {
     return std::visit(

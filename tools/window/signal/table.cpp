@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/signal/table.hpp"
 
-#include "assets/file/whole_file.hpp"
+#include "assets/table/csv_file.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ void write_csv(std::span<const TableTrace> traces, Range time, const std::filesy
         parts.push_back(std::move(part));
     }
     text += "\n" + rows_of(std::move(parts), time.high, 0.5e-9, [](double at) { return fmt::format("{:.9f}", at); });
-    file::write_whole_file(path, text);
+    table::save_csv(path, text);
 }
 
 void write_spectrum_csv(const Plot& plot, const std::filesystem::path& path) {
@@ -76,7 +76,7 @@ void write_spectrum_csv(const Plot& plot, const std::filesystem::path& path) {
         parts.push_back({&at[k], {&levels[k]}, 0});
     }
     text += "\n" + rows_of(std::move(parts), plot.x.high, 1e-6, [](double hz) { return fmt::format("{}", hz); });
-    file::write_whole_file(path, text);
+    table::save_csv(path, text);
 }
 
 void write_waterfall_csv(const Plot& plot, const std::filesystem::path& path) {
@@ -92,7 +92,7 @@ void write_waterfall_csv(const Plot& plot, const std::filesystem::path& path) {
             text += all.bins[all.index_of(row, c)] > 0.0 ? fmt::format(",{}", all.at(row, c)) : ",";
         text += "\n";
     }
-    file::write_whole_file(path, text);
+    table::save_csv(path, text);
 }
 
 void write_histogram_csv(const Plot& plot, const std::filesystem::path& path) {
@@ -101,14 +101,14 @@ void write_histogram_csv(const Plot& plot, const std::filesystem::path& path) {
     for (const Curve& curve : plot.curves)
         for (std::size_t i = 0; i + 3 < curve.points.size(); i += 4)
             text += fmt::format("{},{},{}\n", curve.points[i + 1].x, curve.points[i + 2].x, curve.points[i + 1].y);
-    file::write_whole_file(path, text);
+    table::save_csv(path, text);
 }
 
 void write_pairs_csv(const Plot& plot, const std::filesystem::path& path) {
     std::string text = column_name("x", plot.x_unit) + "," + column_name("y", plot.y_unit) + "\n";
     for (const Curve& curve : plot.curves)
         for (const Point& p : curve.points) text += fmt::format("{},{}\n", p.x, p.y);
-    file::write_whole_file(path, text);
+    table::save_csv(path, text);
 }
 
 }  // namespace tactus::window
