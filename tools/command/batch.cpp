@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/batch.hpp"
 
+#include "dsp/core/error.hpp"
 #include "tools/analysis/workers.hpp"
 #include "tools/command/progress.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <mutex>
@@ -53,6 +56,18 @@ std::size_t tell_failures(const std::vector<std::string>& failures) {
     for (const std::string& failure : failures)
         if (!failure.empty()) ++bad, fmt::print(stderr, "tactus: {}\n", failure);
     return bad;
+}
+
+void check_batch_output(const std::filesystem::path& out, const std::vector<std::string>& endings, bool has_several) {
+    std::error_code failed;
+    if (out.empty() || (std::filesystem::exists(out, failed) && !std::filesystem::is_regular_file(out, failed))) return;
+    const bool is_file = std::ranges::any_of(
+        endings, [&](const std::string& ending) { return out.filename().string().ends_with(ending); });
+    if (has_several && is_file)
+        throw Error(fmt::format("{}: several inputs need a folder; choose a name without {}", out.string(),
+                                out.extension().string()));
+    if (!has_several && !is_file)
+        throw Error(fmt::format("{}: of one input a file is written, as {}", out.string(), fmt::join(endings, ", ")));
 }
 
 }  // namespace tactus::command

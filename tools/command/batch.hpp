@@ -5,6 +5,7 @@
 #include "assets/table/csv_field.hpp"
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,10 @@ std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view
 
 /// Prints the errors on standard error. Returns their number.
 std::size_t tell_failures(const std::vector<std::string>& failures);
+
+/// Throws Error if an output that is a file for one input, and a folder for several, has the name of the other kind. A
+/// name with one of `endings` is that of a file. Devices, pipes and existing folders may have any name.
+void check_batch_output(const std::filesystem::path& out, const std::vector<std::string>& endings, bool has_several);
 
 using table::csv_field;
 

@@ -123,7 +123,7 @@ int command_line(const Program& program, int argc, char** argv) {
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
         const CLI::App* given = given_verb(app);
         const DeclaredVerb& chosen = declared.at(given);
-        check_written(*given, full_name_of(*given, app));
+        check_written(*given, full_name_of(*given, app), declared);
         if (plugin::are_given()) nodes::catalogue();  // an error of them is one of the command line
         return chosen.verb->forward ? chosen.verb->forward(handed_on) : chosen.run();
     } catch (const CLI::ParseError& error) {

@@ -19,7 +19,7 @@ void declare_verbs(CLI::App& app, const Verbs& verbs, DeclaredVerbs& declared) {
         if (verb.verbs) declare_verbs(*part, verb.verbs(), declared);
         DeclaredVerb& one = declared[part];
         one.verb = &verb;
-        VerbOptions options(*part, one.old);
+        VerbOptions options(*part, one.old, one.outputs);
         if (verb.add) one.run = verb.add(options);
     }
 }

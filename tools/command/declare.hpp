@@ -5,14 +5,16 @@
 #include "tools/command/options.hpp"
 
 #include <map>
+#include <vector>
 
 namespace tactus::command {
 
-/// The declaration of a verb: its action and its old spellings.
+/// The declaration of a verb: its action, its old spellings and its outputs.
 struct DeclaredVerb {
     const Verb* verb = nullptr;
     Action run;
     OldSpellings old;
+    std::vector<DeclaredOutput> outputs;
 };
 using DeclaredVerbs = std::map<const CLI::App*, DeclaredVerb>;
 

@@ -174,6 +174,13 @@ Option VerbOptions::add(const std::string& name, T& value, const std::string& ab
 }
 
 template <class T>
+Option VerbOptions::output(const std::string& name, T& value, OutputFormat what, const std::string& about) {
+    CLI::Option* option = app_.add_option(name, value, about);
+    outputs_.push_back({option, std::move(what)});
+    return Option(option);
+}
+
+template <class T>
 Option VerbOptions::call(const std::string& name, std::function<void(const T&)> take, const std::string& about) {
     return Option(app_.add_option_function<T>(name, std::move(take), about));
 }
@@ -208,6 +215,10 @@ template Option VerbOptions::add(const std::string&, std::vector<std::string>&, 
 template Option VerbOptions::add(const std::string&, std::vector<std::filesystem::path>&, const std::string&);
 template Option VerbOptions::add(const std::string&, std::vector<int>&, const std::string&);
 template Option VerbOptions::add(const std::string&, std::vector<double>&, const std::string&);
+template Option VerbOptions::output(const std::string&, std::string&, OutputFormat, const std::string&);
+template Option VerbOptions::output(const std::string&, std::filesystem::path&, OutputFormat, const std::string&);
+template Option VerbOptions::output(const std::string&, std::vector<std::filesystem::path>&, OutputFormat,
+                                    const std::string&);
 template Option VerbOptions::call(const std::string&, std::function<void(const double&)>, const std::string&);
 template Option VerbOptions::call(const std::string&, std::function<void(const std::string&)>, const std::string&);
 

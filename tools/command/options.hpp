@@ -45,6 +45,24 @@ private:
     CLI::Option* option_;
 };
 
+/// What an option names: a file or a folder that the verb writes. Outputs are declared apart from inputs, so that
+/// check_written() can protect every input and refuse a name whose ending promises a format that the verb does not
+/// write, for all verbs and before any work.
+struct OutputFormat {
+    std::vector<std::string> endings;  ///< of the file, with their point, as ".seg.nrrd"
+    bool is_free = false;  ///< also a folder, or a text of no common format: any ending that no output has
+
+    static OutputFormat folder() { return {{}, true}; }
+    static OutputFormat file_or_folder(std::vector<std::string> endings) { return {std::move(endings), true}; }
+    static OutputFormat text() { return {{}, true}; }
+};
+
+/// An output that a verb declared.
+struct DeclaredOutput {
+    const CLI::Option* option;
+    OutputFormat what;
+};
+
 /// Old spellings that a verb accepts; no help text shows them.
 struct OldSpellings {
     std::vector<std::pair<std::string, std::string>> renamed;  ///< old option, current option
@@ -54,12 +72,16 @@ struct OldSpellings {
 /// Declares the options of a verb. Referenced variables must live until the verb has run.
 class VerbOptions {
 public:
-    VerbOptions(CLI::App& app, OldSpellings& old) : app_(app), old_(old) {}
+    VerbOptions(CLI::App& app, OldSpellings& old, std::vector<DeclaredOutput>& outputs)
+        : app_(app), old_(old), outputs_(outputs) {}
 
     /// `name`: "--out", "-o,--out", or without dashes for a positional argument. T: texts, paths, numbers,
     /// std::optional of numbers, and std::vector of texts, paths and numbers.
     template <class T>
     Option add(const std::string& name, T& value, const std::string& about);
+    /// The same for a file or a folder that the verb writes. Every such option is declared with it.
+    template <class T>
+    Option output(const std::string& name, T& value, OutputFormat what, const std::string& about);
     /// Calls `take` with the value. T: double or std::string. `take` may throw Error.
     template <class T>
     Option call(const std::string& name, std::function<void(const T&)> take, const std::string& about);
@@ -80,6 +102,7 @@ public:
 private:
     CLI::App& app_;
     OldSpellings& old_;
+    std::vector<DeclaredOutput>& outputs_;
 };
 
 /// "200:600" or "200 Hz:1 kHz" → Hz, low and high. Throws Error that names the option.

@@ -57,7 +57,8 @@ void add_site_options(VerbOptions& verb, run::SiteText& text) {
 }
 
 void add_record_options(VerbOptions& verb, std::filesystem::path& folder, bool& values) {
-    const Option record = verb.add("--record", folder, "record the run as a take, a folder that 'replay' repeats");
+    const Option record = verb.output("--record", folder, OutputFormat::folder(),
+                                      "record the run as a take, a folder that 'replay' repeats");
     values = false;
     verb.flag("--values", values,
               "record every value, not only the first 30 MB: the take repeats all of them in each case, and 'replay "

@@ -14,14 +14,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace tactus::command {
 
 namespace {
-
-constexpr std::array texts{".txt", ".json", ".csv", ".html", ".pdf"};
 
 /// The first picture that can be drawn: a figure without data has no function to draw it.
 const report::ResultEntry::Picture* first_picture(const report::Result& result) {
@@ -55,12 +52,20 @@ void write_file(const report::Result& result, const std::filesystem::path& out, 
 
 /// ".txt, .json, .csv, .html or .pdf" of the formats of a result.
 std::string endings_of(const ResultChoice& choice) {
-    std::vector<std::string> all;
-    for (const char* ending : texts)
-        if (!choice.product.has(std::string("x") + ending)) all.emplace_back(ending);
+    std::vector<std::string> all = choice.formats;
+    std::erase_if(all, [&](const std::string& ending) { return choice.product.has("x" + ending); });
     const std::string last = all.back();
     all.pop_back();
     return fmt::format("{} or {}", fmt::join(all, ", "), last);
+}
+
+/// Of the product first, which is why the verb was called.
+std::vector<std::string> all_endings(const ResultChoice& choice) {
+    std::vector<std::string> all = choice.product.endings;
+    for (const std::string& ending : choice.formats)
+        if (std::ranges::find(all, ending) == all.end()) all.push_back(ending);
+    if (choice.has_figure != ResultFigure::none) all.insert(all.end(), {".svg", ".png"});
+    return all;
 }
 
 }  // namespace
@@ -73,7 +78,7 @@ Option add_result_options(VerbOptions& verb, ResultChoice& choice, ResultFigure 
     if (has_figure) about += ", or .svg or .png of its figure";
     if (!choice.product.endings.empty())
         about += fmt::format("; {}: {}", fmt::join(choice.product.endings, ", "), choice.product.about);
-    const Option out = verb.add("-o,--out", choice.out, about + "; repeatable").one_each();
+    const Option out = verb.output("-o,--out", choice.out, {all_endings(choice)}, about + "; repeatable").one_each();
     verb.flag("--json", choice.json, "as JSON");
     verb.flag("--quiet", choice.quiet, "print no result, only errors; for -o");
     if (has_figure)
@@ -101,7 +106,8 @@ bool ResultChoice::shows_figures() const {
 }
 
 bool is_result_file(const std::filesystem::path& path) {
-    return report::is_figure_file(path) || std::ranges::find(texts, path.extension().string()) != texts.end();
+    const std::vector<std::string> formats = ResultChoice().formats;
+    return report::is_figure_file(path) || std::ranges::find(formats, path.extension().string()) != formats.end();
 }
 
 void check_result_files(const ResultChoice& choice, const std::vector<std::filesystem::path>& sources,
@@ -110,22 +116,11 @@ void check_result_files(const ResultChoice& choice, const std::vector<std::files
     for (const std::filesystem::path& source : sources) files.push_back(bone::file_of_bone(source));
     outputs.insert(outputs.end(), others.begin(), others.end());
     file::check_outputs(files, outputs);
-    const bool has_figure = choice.has_figure != ResultFigure::none;
-    std::string product;
-    if (const std::vector<std::string>& own = choice.product.endings; !own.empty())
-        product = fmt::format("; {}: written as {}{}{}", choice.product.about,
-                              fmt::join(own.begin(), own.end() - 1, ", "), own.size() > 1 ? " or " : "", own.back());
-    for (const std::filesystem::path& out : choice.out) {
-        const std::string ending = out.extension().string();
-        const bool is_image = ending == ".svg" || ending == ".png";
-        if (choice.product.has(out)) continue;
-        if (is_image && !has_figure)
+    if (choice.has_figure != ResultFigure::none) return;
+    for (const std::filesystem::path& out : choice.out)
+        if (const std::string ending = out.extension().string();
+            (ending == ".svg" || ending == ".png") && !choice.product.has(out))
             throw Error(fmt::format("{}: this result has no figure; write it as {}", out.string(), endings_of(choice)));
-        if (!is_image && std::ranges::find(texts, ending) == texts.end())
-            throw Error(fmt::format("{}: a result is written as {}{}", out.string(), endings_of(choice),
-                                    has_figure ? ", a figure as .svg or .png" : "") +
-                        product);
-    }
 }
 
 void draw_pictures(report::Result& result, const ResultChoice& choice) {

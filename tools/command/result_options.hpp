@@ -27,6 +27,8 @@ struct ResultChoice {
     bool quiet = false, json = false;
     FigureChoice figure;
     Product product;
+    /// Endings of the formats of the result itself; set before add_result_options by a verb that has fewer.
+    std::vector<std::string> formats{".txt", ".json", ".csv", ".html", ".pdf"};
     ResultFigure has_figure = ResultFigure::none;
 
     /// The files for the product.
@@ -41,8 +43,7 @@ Option add_result_options(VerbOptions& verb, ResultChoice& choice, ResultFigure 
 /// Whether `path` has the ending of a format of results or figures.
 bool is_result_file(const std::filesystem::path& path);
 
-/// Throws Error for a file whose ending no format has, for a figure if there is none, and for what file::check_outputs
-/// refuses. `sources`: the files that the verb reads or changes, of bones with or without "#NAME"; `others`: files that it writes besides those of -o. Called
+/// Throws Error for a figure if there is none in this case, and for what file::check_outputs refuses. `sources`: the files that the verb reads or changes, of bones with or without "#NAME"; `others`: files that it writes besides those of -o. Called
 /// before anything is read or changed.
 void check_result_files(const ResultChoice& choice, const std::vector<std::filesystem::path>& sources,
                         const std::vector<std::filesystem::path>& others = {});

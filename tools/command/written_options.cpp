@@ -4,13 +4,17 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/outputs.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/analysis/experiment/experiment_folder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <set>
+#include <utility>
 
 namespace tactus::command {
 
@@ -58,34 +62,45 @@ void check_folder(const fs::path& folder, const std::vector<fs::path>& sources,
     }
 }
 
-}  // namespace
-
-const std::vector<WrittenOption>& written_options() {
-    static const std::vector<WrittenOption> all{{"", "--out"},
-                                                {"", "--csv"},
-                                                {"", "--table"},
-                                                {"", "--plot"},
-                                                {"", "--cepstrum"},
-                                                {"", "--waterfall"},
-                                                {"", "--straightened"},
-                                                {"", "--equaliser"},
-                                                {"", "--picture"},
-                                                {"", "--record"},
-                                                {"calibrate", "--keep"},
-                                                {"plan guide", "--task"},
-                                                {"plan report", "--pdf"},
-                                                {"run", "--log"},
-                                                {"segment", "--certainty"},
-                                                {"segment", "--paint"},
-                                                {"segment", "--plan"},
-                                                {"segment", "--propose"}};
-    return all;
+std::string name_of(const CLI::Option& option) {
+    return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().front();
 }
 
-bool is_written(std::string_view verb, const CLI::Option& option) {
-    return std::ranges::any_of(written_options(), [&](const WrittenOption& one) {
-        return (one.verb.empty() || one.verb == verb) && option.check_name(std::string(one.option));
-    });
+/// ".html, .pdf or .txt"
+std::string list_of(const std::vector<std::string>& endings) {
+    if (endings.size() == 1) return endings.front();
+    return fmt::format("{} or {}", fmt::join(endings.begin(), endings.end() - 1, ", "), endings.back());
+}
+
+bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
+    return std::ranges::any_of(endings, [&](const std::string& ending) { return name.ends_with(ending); });
+}
+
+/// Throws Error for a name whose ending belongs to a format that the option does not write.
+void check_ending(const fs::path& out, const DeclaredOutput& output, const std::vector<std::string>& formats) {
+    const OutputFormat& what = output.what;
+    const std::string name = out.filename().string();
+    std::error_code failed;
+    // A device or a pipe has no format, and whether an existing folder will do is for the verb to judge.
+    if (out.empty() || (fs::exists(out, failed) && !fs::is_regular_file(out, failed))) return;
+    if (has_ending(name, what.endings) || (what.is_free && !has_ending(name, formats))) return;
+    const std::string option = name_of(*output.option);
+    if (what.endings.empty())
+        throw Error(fmt::format("{}: {} does not write '{}' files; choose a name without this ending", out.string(),
+                                option, out.extension().string()));
+    throw Error(fmt::format("{}: {} is written as {}{}", out.string(), option, list_of(what.endings),
+                            what.is_free ? ", or into a folder" : ""));
+}
+
+}  // namespace
+
+std::vector<std::string> written_formats(const DeclaredVerbs& declared) {
+    // No option names these: sounds are written into folders, and the others are only read.
+    std::set<std::string> all{".wav", ".flac", ".obj", ".dcm", ".zip"};
+    for (const auto& [app, verb] : declared)
+        for (const DeclaredOutput& output : verb.outputs)
+            all.insert(output.what.endings.begin(), output.what.endings.end());
+    return {all.begin(), all.end()};
 }
 
 std::vector<std::string> files_in_folder(std::string_view verb) {
@@ -95,26 +110,28 @@ std::vector<std::string> files_in_folder(std::string_view verb) {
     return {};
 }
 
-std::vector<std::string> own_results(std::string_view verb) {
-    if (verb == "experiment analyse") return {"report.*", "results.*"};
-    return {};
-}
-
-void check_written(const CLI::App& app, const std::string& verb) {
+void check_written(const CLI::App& app, const std::string& verb, const DeclaredVerbs& declared) {
+    const std::vector<DeclaredOutput>& outputs = declared.at(&app).outputs;
     std::vector<fs::path> sources, files, folders;
+    std::vector<std::pair<fs::path, const DeclaredOutput*>> named;
     for (const CLI::Option* option : app.get_options()) {
         if (option->get_type_size() == 0) continue;  // a flag
-        for (const std::string& value : option->results())
-            if (!is_written(verb, *option)) std::ranges::move(files_in(value), std::back_inserter(sources));
-            else if (std::error_code failed; fs::is_directory(value, failed)) folders.emplace_back(value);
+        const auto output = std::ranges::find(outputs, option, &DeclaredOutput::option);
+        for (const std::string& value : option->results()) {
+            if (output == outputs.end()) {
+                std::ranges::move(files_in(value), std::back_inserter(sources));
+                continue;
+            }
+            named.emplace_back(value, &*output);
+            if (std::error_code failed; fs::is_directory(value, failed)) folders.emplace_back(value);
             else files.emplace_back(value);
+        }
     }
-    const std::vector<std::string> own = own_results(verb);
+    // Results that 'experiment analyse' made at another time are in the folder that it reads.
     const auto is_own = [&](const fs::path& source, const fs::path& out) {
         std::error_code failed;
-        return fs::equivalent(source, out.has_parent_path() ? out.parent_path() : ".", failed) &&
-               std::ranges::any_of(
-                   own, [&](const std::string& pattern) { return matches(out.filename().string(), pattern); });
+        return verb == "experiment analyse" && analysis::is_experiment_result(out.filename().string()) &&
+               fs::equivalent(source, out.has_parent_path() ? out.parent_path() : ".", failed);
     };
     for (const fs::path& out : files)
         for (const fs::path& source : sources)
@@ -123,6 +140,9 @@ void check_written(const CLI::App& app, const std::string& verb) {
         if (std::ranges::count(files, files[n]) > 1) file::check_outputs({}, files);
     if (const std::vector<std::string> patterns = files_in_folder(verb); !patterns.empty())
         for (const fs::path& folder : folders) check_folder(folder, sources, patterns);
+    // Last: that a source would be lost is the graver mistake.
+    const std::vector<std::string> formats = written_formats(declared);
+    for (const auto& [out, output] : named) check_ending(out, *output, formats);
 }
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No verb overwrites its input.
+// No verb overwrites its input, or writes a file whose ending promises another format.
 #include "tools/command/written_options.hpp"
 
 #include "tests/support/catch.hpp"
@@ -13,13 +13,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
 #include <vector>
 
 using namespace tactus;
-using command::is_written;
 using Catch::Matchers::ContainsSubstring;
+using command::DeclaredOutput;
+using command::DeclaredVerbs;
 namespace fs = std::filesystem;
 using test::Folder;
 using test::slurp;
@@ -59,71 +61,193 @@ void give(std::vector<std::string>& words, const CLI::Option& option, const std:
     const std::string first =
         open == std::string::npos ? "2" : type.substr(open + 1, type.find_first_of(",}", open) - open - 1);
     const std::string value = is_text(option) ? text : first;
-    if (!option.get_positional()) words.push_back(name_of(option));
+    // The short name: 'validate --out NODE.PORT' is an old spelling of another option.
+    if (!option.get_positional())
+        words.push_back(option.get_snames().empty() ? name_of(option) : "-" + option.get_snames().front());
     if (option.get_type_size() == 0) return;
     for (int n = 0; n < std::max(option.get_items_expected_min(), 1); ++n) words.push_back(value);
 }
 
-/// Tries each input of the verb as each of its outputs; all verbs below.
-void walk(const CLI::App& app, const std::string& name, const Folder& folder, std::set<std::string>& tried) {
-    for (const CLI::App* verb : app.get_subcommands(nullptr))
-        walk(*verb, name.empty() ? verb->get_name() : name + " " + verb->get_name(), folder, tried);
-    for (const CLI::Option* output : app.get_options()) {
-        if (!is_written(name, *output)) continue;
-        bool is_refused = false, has_input = false;
-        for (const CLI::Option* input : app.get_options()) {
-            if (is_written(name, *input) || !is_text(*input) || excludes(*input, *output) || excludes(*output, *input))
-                continue;
-            const fs::path file = folder.write("precious.csv", "scan of a patient");
-            std::vector<std::string> words{"tactus"};
-            for (std::size_t at = 0; at < name.size();) {
-                const std::size_t end = std::min(name.find(' ', at), name.size());
-                words.push_back(name.substr(at, end - at));
-                at = end + 1;
-            }
-            std::set<const CLI::Option*> given;
-            for (const CLI::Option* one : app.get_options())
-                if (one == input || one == output || one->get_required()) given.insert(one);
-            for (const CLI::Option* one : std::set(given))
-                for (const CLI::Option* needed : one->get_needs()) given.insert(needed);
-            for (const CLI::Option* one : app.get_options())
-                if (given.contains(one))
-                    give(words, *one, one == input || one == output ? file.string() : (folder.path / "x").string());
-            const auto [code, errors] = run_here(words, folder.path / "errors");
-            CAPTURE(words, errors);
-            has_input = true;
-            CHECK(code == 2);
-            CHECK(slurp(file) == "scan of a patient");
-            is_refused = is_refused || errors.find("this is a source") != std::string::npos;
-        }
-        CAPTURE(name, name_of(*output));
-        CHECK(is_refused == has_input);
-        tried.insert(name + " " + name_of(*output));
-    }
+const DeclaredOutput* output_of(const DeclaredVerbs& declared, const CLI::App& app, const CLI::Option& option) {
+    const auto verb = declared.find(&app);
+    if (verb == declared.end()) return nullptr;
+    const auto found = std::ranges::find(verb->second.outputs, &option, &DeclaredOutput::option);
+    return found == verb->second.outputs.end() ? nullptr : &*found;
 }
+
+/// The command line of a verb with these options and those that they need, each text `value(option)`.
+std::vector<std::string> line_of(const CLI::App& app, const std::string& name, std::set<const CLI::Option*> given,
+                                 const std::function<std::string(const CLI::Option&)>& value) {
+    std::vector<std::string> words{"tactus"};
+    for (std::size_t at = 0; at < name.size();) {
+        const std::size_t end = std::min(name.find(' ', at), name.size());
+        words.push_back(name.substr(at, end - at));
+        at = end + 1;
+    }
+    for (const CLI::Option* one : app.get_options())
+        if (one->get_required()) given.insert(one);
+    for (const CLI::Option* one : std::set(given))
+        for (const CLI::Option* needed : one->get_needs()) given.insert(needed);
+    for (const CLI::Option* one : app.get_options())
+        if (given.contains(one)) give(words, *one, value(*one));
+    return words;
+}
+
+/// Calls `visit` for each verb, with its name.
+void for_each_verb(const CLI::App& app, const std::string& name,
+                   const std::function<void(const CLI::App&, const std::string&)>& visit) {
+    visit(app, name);
+    for (const CLI::App* verb : app.get_subcommands(nullptr))
+        for_each_verb(*verb, name.empty() ? verb->get_name() : name + " " + verb->get_name(), visit);
+}
+
+/// The program's verbs as the command line declares them.
+struct Verbs {
+    CLI::App app{"", "tactus"};
+    DeclaredVerbs declared;
+
+    Verbs() { command::declare(app, command::tactus_program(), declared); }
+    void each(const std::function<void(const CLI::App&, const std::string&)>& visit) const {
+        for_each_verb(app, "", visit);
+    }
+};
 
 }  // namespace
 
 TEST_CASE("no verb overwrites its input: each input as each output is refused, and stays as it was") {
     const Folder folder;
-    CLI::App app{"", "tactus"};
-    command::DeclaredVerbs declared;
-    command::declare(app, command::tactus_program(), declared);
+    const Verbs verbs;
     std::set<std::string> tried;
-    walk(app, "", folder, tried);
+    verbs.each([&](const CLI::App& app, const std::string& name) {
+        for (const CLI::Option* output : app.get_options()) {
+            const DeclaredOutput* const declared = output_of(verbs.declared, app, *output);
+            if (!declared) continue;
+            // With an ending that the output has: else this would be refused for its name.
+            const std::string ending = declared->what.endings.empty() ? "" : declared->what.endings.front();
+            bool is_refused = false, has_input = false;
+            for (const CLI::Option* input : app.get_options()) {
+                if (output_of(verbs.declared, app, *input) || !is_text(*input) || excludes(*input, *output) ||
+                    excludes(*output, *input))
+                    continue;
+                const fs::path file = folder.write("precious" + ending, "scan of a patient");
+                const auto words = line_of(app, name, {input, output}, [&](const CLI::Option& one) {
+                    const DeclaredOutput* const other = output_of(verbs.declared, app, one);
+                    const bool has_ending = other && !other->what.endings.empty();
+                    return &one == input || &one == output
+                               ? file.string()
+                               : (folder.path / "x").string() + (has_ending ? other->what.endings.front() : "");
+                });
+                const auto [code, errors] = run_here(words, folder.path / "errors");
+                CAPTURE(words, errors);
+                has_input = true;
+                CHECK(code == 2);
+                CHECK(slurp(file) == "scan of a patient");
+                is_refused = is_refused || errors.find("this is a source") != std::string::npos;
+            }
+            CAPTURE(name, name_of(*output));
+            CHECK(is_refused == has_input);
+            tried.insert(name + " " + name_of(*output));
+        }
+    });
     for (const char* one : {"spectrum --csv", "spectrum --table", "spectrum --cepstrum", "spectrum --plot",
                             "exposure --table", "compare --table", "validate --table", "score --csv",
                             "fracture-surface --out", "import --out", "plan export --out", "plan report --pdf"}) {
         CAPTURE(one);
         CHECK(tried.contains(one));
     }
-    // Each option in the list is one of a verb.
-    for (const command::WrittenOption& one : command::written_options()) {
-        CAPTURE(one.option);
-        CHECK(std::ranges::any_of(tried, [&](const std::string& name) {
-            return name.ends_with(" " + std::string(one.option)) && name.starts_with(one.verb);
-        }));
-    }
+}
+
+TEST_CASE("no verb writes a file whose ending promises another format: it is refused before any input is read") {
+    const Folder folder;
+    const Verbs verbs;
+    const std::vector<std::string> formats = command::written_formats(verbs.declared);
+    CHECK(std::ranges::find(formats, ".vdb") != formats.end());
+    std::size_t refused = 0;
+    verbs.each([&](const CLI::App& app, const std::string& name) {
+        for (const CLI::Option* output : app.get_options()) {
+            const DeclaredOutput* const declared = output_of(verbs.declared, app, *output);
+            if (!declared) continue;
+            const auto has = [&](const std::string& ending) {
+                return std::ranges::any_of(declared->what.endings,
+                                           [&](const std::string& own) { return ending.ends_with(own); });
+            };
+            std::vector<std::string> odd;
+            if (!declared->what.is_free) odd = {".doc", ""};
+            for (const std::string& format : formats)
+                if (!has(format)) odd.push_back(format);
+            for (const std::string& ending : odd) {
+                const fs::path file = folder.path / ("odd" + ending);
+                // The inputs do not exist, which would be the error after this one.
+                const auto words = line_of(app, name, {output}, [&](const CLI::Option& one) {
+                    const DeclaredOutput* const other = output_of(verbs.declared, app, one);
+                    return &one == output
+                               ? file.string()
+                               : (folder.path / "x").string() +
+                                     (other && !other->what.endings.empty() ? other->what.endings.front() : "");
+                });
+                const auto [code, errors] = run_here(words, folder.path / "errors");
+                CAPTURE(words, errors);
+                CHECK(code == 2);
+                CHECK_THAT(errors, ContainsSubstring(file.string() + ": "));
+                CHECK_THAT(errors, ContainsSubstring("is written as") || ContainsSubstring("does not write"));
+                for (const std::string& own : declared->what.endings) CHECK_THAT(errors, ContainsSubstring(own));
+                CHECK_FALSE(fs::exists(file));
+                ++refused;
+            }
+        }
+    });
+    CHECK(refused > 500);
+}
+
+TEST_CASE("every option that a verb writes to is declared as an output") {
+    const Verbs verbs;
+    std::set<std::string> names;
+    verbs.each([&](const CLI::App& app, const std::string&) {
+        for (const CLI::Option* option : app.get_options())
+            if (output_of(verbs.declared, app, *option) && !option->get_positional()) names.insert(name_of(*option));
+    });
+    // Inputs that are named like an output of another verb, or whose help text speaks of writing.
+    const std::set<std::string> inputs{"fracture-surface --paint", "render --log", "score --task", "snap --paint"};
+    std::set<std::string> missing, seen;
+    verbs.each([&](const CLI::App& app, const std::string& name) {
+        for (const CLI::Option* option : app.get_options()) {
+            if (!is_text(*option) || output_of(verbs.declared, app, *option)) continue;
+            const std::string about = option->get_description();
+            const bool is_said = std::ranges::any_of(
+                std::vector<std::string>{"write", "written", "file for the", "folder for", "CSV file with", "a PNG of"},
+                [&](const std::string& word) { return about.find(word) != std::string::npos; });
+            if (!is_said && !names.contains(name_of(*option))) continue;
+            const std::string one = name + " " + name_of(*option);
+            if (inputs.contains(one)) seen.insert(one);
+            else missing.insert(one);
+        }
+    });
+    CHECK(missing == std::set<std::string>());
+    CHECK(seen == inputs);
+}
+
+TEST_CASE("a file named for one input or a folder for several is refused when it has the name of the other") {
+    const Folder folder;
+    fs::create_directory(folder.path / "logs");
+    std::string rows = "t_s,a\n";
+    for (int n = 0; n < 400; ++n) rows += std::to_string(n * 0.001) + "," + std::to_string(n % 7) + "\n";
+    folder.write("logs/a.csv", rows);
+    folder.write("logs/b.csv", rows);
+    const std::string at = folder.path.string() + "/";
+    const auto refused = [&](const std::string& arguments, const std::string& text, const std::string& out) {
+        const test::Outcome outcome = folder.tactus(arguments + " " + at + out);
+        CAPTURE(arguments, outcome.err);
+        CHECK(outcome.code == 2);
+        CHECK_THAT(outcome.err, ContainsSubstring(text));
+        CHECK_FALSE(fs::exists(folder.path / out));
+    };
+    refused("spectrum " + at + "logs --csv", "several inputs need a folder", "x.csv");
+    refused("spectrum " + at + "logs/a.csv --csv", "of one input a file is written, as .csv", "x");
+    refused("spectrum " + at + "logs/a.csv --plot", "of one input a file is written, as .svg", "x");
+    refused("compare " + at + "logs " + at + "logs --plot", "several inputs need a folder", "x.svg");
+    CHECK(folder.tactus("spectrum " + at + "logs/a.csv --csv /dev/stdout").code == 0);
+    CHECK(folder.tactus("spectrum " + at + "logs --csv " + at + "each").code == 0);
+    CHECK(fs::exists(folder.path / "each" / "a.csv.csv"));
 }
 
 TEST_CASE("a file in a source folder, or named by a source, is not overwritten") {

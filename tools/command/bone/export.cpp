@@ -78,9 +78,6 @@ file::Json export_volume(const std::vector<bone::Bone>& bones, const ExportChoic
 int export_bone(const ExportChoice& choice) {
     const std::string kind = choice.out.extension().string();
     const bool is_mesh = kind == ".stl" || kind == ".ply";
-    if (!is_mesh && kind != ".nrrd" && kind != ".nii" && !choice.out.string().ends_with(".nii.gz"))
-        throw Error(fmt::format("{}: export writes .stl and .ply (the surface), .nrrd, .nii and .nii.gz (a volume)",
-                                choice.out.string()));
     std::vector<bone::Bone> bones = chosen_bones(choice);
     crop(bones, choice, is_mesh);
     file::Json json = is_mesh ? export_mesh(bones, choice.out) : export_volume(bones, choice);
@@ -101,7 +98,9 @@ int export_bone(const ExportChoice& choice) {
 Action declare_export(VerbOptions& verb) {
     const auto choice = std::make_shared<ExportChoice>();
     verb.add("bone", choice->input, "bone file; FILE.vdb#NAME for one of several").required();
-    verb.add("-o,--out", choice->out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume").required();
+    verb.output("-o,--out", choice->out, {{".stl", ".ply", ".nrrd", ".nii", ".nii.gz"}},
+                ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume")
+        .required();
     verb.add("--bone", choice->bone, "one of several bones (default: all)");
     verb.add("--crop", choice->crop, "only this box: x0:x1,y0:y1,z0:z1 in mm, LPS");
     verb.add("--cut-of", choice->cut_of, "the bone before it was cut: only 5 mm around what the cut removed");

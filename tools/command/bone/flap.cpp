@@ -64,7 +64,7 @@ int flap(const FlapChoice& choice) {
 
 Action declare_flap(VerbOptions& verb) {
     const auto choice = std::make_shared<FlapChoice>();
-    verb.add("-o,--out", choice->out, "folder for the files").required();
+    verb.output("-o,--out", choice->out, OutputFormat::folder(), "folder for the files").required();
     verb.add("--leg", choice->leg, "leg that the fibula is taken from").shows_default().one_of({"left", "right"});
     verb.add("--fibula", choice->fibula, "a person's fibula in place of a generated one (.stl, .ply, .obj, mm, LPS)");
     verb.add("--fibula-leg", choice->fibula_leg, "leg of --fibula; mirrored when it is not --leg")

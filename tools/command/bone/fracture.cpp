@@ -107,7 +107,7 @@ int fracture(const FractureChoice& choice) {
 Action declare_fracture(VerbOptions& verb) {
     const auto choice = std::make_shared<FractureChoice>();
     verb.add("bone", choice->bone, "bone file, or anything that import reads").required();
-    verb.add("-o,--out", choice->out, "folder for the fragments and truth.json").required();
+    verb.output("-o,--out", choice->out, OutputFormat::folder(), "folder for the fragments and truth.json").required();
     verb.add("--pieces", choice->settings.pieces, "number of pieces").shows_default().range(2, 200);
     verb.add("--seed", choice->settings.seed, "seed of the random fracture").shows_default();
     verb.add("--chips", choice->chips, "share of each fracture that is chipped off one side, %").range(0.0, 90.0);

@@ -27,16 +27,11 @@ struct FractureSurfaceChoice {
 
 int fracture_surface(const FractureSurfaceChoice& choice) {
     analysis::FractureSurfaceSettings settings = choice.settings;
-    std::vector<std::filesystem::path> sources{settings.bone};
-    for (const std::filesystem::path& source : {settings.paint, settings.intact, settings.main})
-        if (!source.empty()) sources.push_back(source);
-    for (const std::filesystem::path& other : settings.facing) {
+    for (const std::filesystem::path& other : settings.facing)
         if (bone::name_one_bone(settings.bone, other))
             throw Error(
                 fmt::format("{}: a fragment cannot face itself; name another one with --facing", other.string()));
-        sources.push_back(other);
-    }
-    check_result_files(choice.result, sources);
+    check_result_files(choice.result, {settings.bone});
     const std::vector<std::filesystem::path> painted = choice.result.products();
     if (painted.size() > 1)
         throw Error(fmt::format("{}: the paint is written to one file, and {} is another", painted[1].string(),

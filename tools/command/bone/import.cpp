@@ -68,7 +68,7 @@ int import_bone(const ImportChoice& choice) {
 Action declare_import(VerbOptions& verb) {
     const auto choice = std::make_shared<ImportChoice>();
     verb.add("input", choice->input, "the file").required();
-    verb.add("-o,--out", choice->out, "OpenVDB file for the bone").required();
+    verb.output("-o,--out", choice->out, {{".vdb"}}, "OpenVDB file for the bone").required();
     verb.add("--threshold", choice->threshold,
              "CT number at and above which a voxel is bone, HU (default: the one that info suggests)")
         .unit("HU");

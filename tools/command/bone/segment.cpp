@@ -69,9 +69,6 @@ void check_outputs(const SegmentChoice& choice) {
     bone::ImportOptions source;
     source.input = choice.settings.scan;
     for (std::filesystem::path out : choice.out) {
-        if (out.extension() != ".nrrd" && !is_bones(out))
-            throw Error(fmt::format("{}: segment writes .nrrd and .seg.nrrd (labels) and .vdb (a bone per label)",
-                                    out.string()));
         bone::check_output(source, out);
     }
     for (const auto& out : {choice.certainty, choice.propose})
@@ -150,10 +147,11 @@ Action declare_segment(VerbOptions& verb) {
     analysis::SegmentSettings& settings = choice->settings;
     verb.add("scan", settings.scan, "a CT: DICOM folder or zip, NRRD, NIfTI, InVesalius").required();
     verb.add("--seeds", choice->seeds, "brush strokes per fragment (.json); see docs/how-to/segment.md");
-    verb.add("--paint", choice->paint.seeds,
-             "open a window to paint the seeds; they are kept in this file (.json) after every stroke, and continued "
-             "when it "
-             "exists");
+    verb.output(
+        "--paint", choice->paint.seeds, {{".json"}},
+        "open a window to paint the seeds; they are kept in this file (.json) after every stroke, and continued "
+        "when it "
+        "exists");
     verb.add(
         "--hand", choice->paint.hand,
         "with --paint: run this patch beside the window; what its 'brush' nodes paint becomes strokes, and the labels "
@@ -161,13 +159,14 @@ Action declare_segment(VerbOptions& verb) {
     verb.add("--view-script", choice->paint.script, "with --paint: run the commands in this file in the window");
     verb.add("--view-scale", choice->paint.scale, "with --paint: scale of text and controls (default: the screen's)")
         .range(0.5, 4.0);
-    verb.add("-o,--out", choice->out,
-             ".nrrd or .seg.nrrd: a label per fragment; .vdb: a bone per fragment; may be given several times")
+    verb.output("-o,--out", choice->out, {{".vdb", ".nrrd"}},
+                ".nrrd or .seg.nrrd: a label per fragment; .vdb: a bone per fragment; may be given several times")
         .one_each();
-    verb.add("--propose", choice->propose, "write a first version of the seeds (.json) for correction by hand");
-    verb.add("--plan", choice->plan, "make a plan of the bones in -o BONES.vdb (.plan.json)");
-    verb.add("--certainty", choice->certainty,
-             "write how certain each voxel is (.nrrd): 1 - second largest / largest probability");
+    verb.output("--propose", choice->propose, {{".json"}},
+                "write a first version of the seeds (.json) for correction by hand");
+    verb.output("--plan", choice->plan, {{".json"}}, "make a plan of the bones in -o BONES.vdb (.plan.json)");
+    verb.output("--certainty", choice->certainty, {{".nrrd", ".nii", ".nii.gz"}},
+                "write how certain each voxel is (.nrrd): 1 - second largest / largest probability");
     verb.add("--threshold", settings.threshold,
              "value at and above which a voxel is bone, HU (default: the one that info suggests)")
         .unit("HU");

@@ -87,8 +87,6 @@ int follow(const VesselChoice& given) {
     settings.track.branches = !choice.trunk_only;
     if (choice.min_mm >= choice.max_mm) throw Error("--min-radius must be below --max-radius");
     settings.straightened = choice.straightened;
-    if (!choice.straightened.empty() && choice.straightened.extension() != ".png")
-        throw Error(choice.straightened.string() + ": the straightened view is a .png");
     const analysis::FoundVessel result = analysis::follow_vessel(settings);
     const vessel::Track& track = result.found.track;
     if (result.straightened)
@@ -103,7 +101,7 @@ Action declare_vessel(VerbOptions& verb) {
     verb.add("--seed", choice->seed, "a place in the vessel, mm, LPS").required().value_name("X,Y,Z");
     add_result_options(verb, choice->result, ResultFigure::none,
                        {{".csv", ".vtp", ".mrk.json", ".stl", ".ply"}, "the centre line, or tubes"});
-    verb.add("--straightened", choice->straightened, "a PNG of the seed's branch pulled straight");
+    verb.output("--straightened", choice->straightened, {{".png"}}, "a PNG of the seed's branch pulled straight");
     verb.add("--min-radius", choice->min_mm, "least radius of a vessel, mm")
         .unit("mm")
         .shows_default()

@@ -122,7 +122,7 @@ int calibrate(const CalibrateChoice& choice) {
 
 Action declare_calibrate(VerbOptions& verb) {
     const auto choice = std::make_shared<CalibrateChoice>();
-    verb.add("-o,--out", choice->out, "TOML file for the display").required();
+    verb.output("-o,--out", choice->out, {{".toml"}}, "TOML file for the display").required();
     const Option device = verb.add("--device", choice->device, "driver of the touching device; 'devices' lists them");
     verb.add("--touches", choice->touches, "a CSV of touches instead of a device").excludes(device);
     verb.add("--option", choice->device_options, "option of the device's driver: NAME=VALUE").one_each();
@@ -142,7 +142,7 @@ Action declare_calibrate(VerbOptions& verb) {
     verb.flag("--affine", choice->settings.affine, "also estimate scale and skew of the device");
     verb.add("--tolerance", choice->settings.tolerance, "greatest residual of a touch").shows_default();
     verb.add("--base", choice->base, "display file with the values of untouched parts");
-    verb.add("--keep", choice->keep, "write the touches as CSV, for --touches");
+    verb.output("--keep", choice->keep, {{".csv"}}, "write the touches as CSV, for --touches");
     verb.flag("--json", choice->json, "as JSON");
     verb.check([choice = choice.get()] {
         if (choice->device.empty() == choice->touches.empty())

@@ -211,7 +211,8 @@ Action declare_experiment_run(VerbOptions& verb) {
     const auto choice = std::make_shared<ExperimentRunChoice>();
     verb.add("experiment", choice->experiment, "experiment file, or a name in the library").required();
     verb.add("--subject", choice->subject, "pseudonym: letters and digits; not a name");
-    verb.add("-o,--out", choice->out, "folder of the experiment's data, the same for all subjects; default: NAME-data");
+    verb.output("-o,--out", choice->out, OutputFormat::folder(),
+                "folder of the experiment's data, the same for all subjects; default: NAME-data");
     verb.add("--simulate", choice->model, "simulate the subject by this model file, or by one of the library");
     verb.add("--subjects", choice->simulated, "with --simulate: this many subjects, S01, S02, …").range(1, 1000);
     verb.add("--set", choice->settings, "NODE.PARAM=VALUE for all trials, as hand.device=touch; may be given again")

@@ -88,7 +88,8 @@ Action declare_gripper(VerbOptions& verb) {
     add_patch_options(verb, choice->patch);
     verb.find("patch").about("patch with a gripper on a test rig, such as gripper-wqsm, or a CSV record of a real one");
     verb.add("--matrix", choice->matrix, "TOML file with the test matrix (default: the matrix of Olsson 2015)");
-    verb.add("-o,--out", choice->out, "folder for report.html, report.pdf, rig.json, rig.csv and the figures")
+    verb.output("-o,--out", choice->out, OutputFormat::folder(),
+                "folder for report.html, report.pdf, rig.json, rig.csv and the figures")
         .required();
     verb.add("--jobs", choice->threads, "cells at a time, 0: one per core").range(0, 64);
     verb.old("--threads", "--jobs");

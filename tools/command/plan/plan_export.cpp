@@ -29,7 +29,7 @@ int export_plan(const ExportChoice& choice) {
 Action declare_plan_export(VerbOptions& verb) {
     const auto choice = std::make_shared<ExportChoice>();
     add_plan_options(verb, *choice);
-    verb.add("-o,--out", choice->out, "folder for meshes and tables").required();
+    verb.output("-o,--out", choice->out, OutputFormat::folder(), "folder for meshes and tables").required();
     verb.add("--format", choice->format, "format of the meshes").one_of({"stl", "ply"}).shows_default();
     verb.add("--transform-format", choice->transform_format, "format of the transforms: ITK's text, or HDF5")
         .one_of({"tfm", "h5"})

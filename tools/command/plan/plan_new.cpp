@@ -95,7 +95,8 @@ int make_plan(const NewChoice& choice) {
 
 Action declare_plan_new(VerbOptions& verb) {
     const auto choice = std::make_shared<NewChoice>();
-    add_plan_options(verb, *choice);
+    verb.output("plan", choice->plan, {{".json"}}, "plan file, JSON").required();
+    verb.flag("--json", choice->result.json, "as JSON");
     verb.add("files", choice->names, "bone files or closed meshes, FILE or NAME=FILE").required();
     verb.add("--title", choice->title, "title of the case");
     return [choice] { return make_plan(*choice); };

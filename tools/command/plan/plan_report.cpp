@@ -49,12 +49,6 @@ int report(const ReportChoice& choice) {
     std::vector<std::filesystem::path> sources = plan::files_of(plan, folder);
     sources.push_back(choice.plan);
     check_result_files(files, sources);
-    for (const std::filesystem::path& out : files.out)
-        if (const std::string ending = out.extension().string(); ending == ".json" || ending == ".csv")
-            throw Error(fmt::format(
-                "{}: a report is written as .html, .pdf or .txt; 'tactus plan show', 'gap' and 'reach' write values as "
-                "{}",
-                out.string(), ending));
     Progress progress(files.quiet);
     const report::ShownPlan shown = report::ShownPlan::reported(
         plan, folder, [&progress](double done, std::string_view doing) { progress.show(done, doing); });
@@ -74,9 +68,10 @@ int report(const ReportChoice& choice) {
 
 Action declare_plan_report(VerbOptions& verb) {
     const auto choice = std::make_shared<ReportChoice>();
+    choice->result.formats = {".html", ".pdf", ".txt"};
     add_plan_report_options(verb, *choice)
         .about("file for the report, by its ending: .html, .pdf or .txt; repeatable (default: .html, beside the plan)");
-    verb.add("--pdf", choice->pdf, "write the report as a PDF file too").hidden();
+    verb.output("--pdf", choice->pdf, {{".pdf"}}, "write the report as a PDF file too").hidden();
     return [choice] { return report(*choice); };
 }
 

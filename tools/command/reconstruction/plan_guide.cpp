@@ -58,8 +58,6 @@ std::filesystem::path beside_task(const std::filesystem::path& task, const char*
 }
 
 int make_guide(const GuideOptions& options) {
-    if (!options.task.empty() && options.task.extension() != ".toml")
-        throw Error(fmt::format("{}: a task is written as .toml", options.task.string()));
     const std::filesystem::path bone = beside_task(options.task, "bone"), body = beside_task(options.task, "guide");
     check_plan_results(options, {}, {options.task, bone, body});
     const std::vector<std::filesystem::path> meshes = options.result.products();
@@ -87,8 +85,8 @@ Action declare_plan_guide(VerbOptions& verb) {
     const auto o = std::make_shared<GuideOptions>();
     add_plan_report_options(verb, *o, {{".stl", ".3mf", ".ply"}, "the guide, mm, LPS"}).required();
     verb.old("--report", "--out");
-    verb.add("--task", o->task,
-             "TOML file: a task for 'tactus session', to saw in the guide; its bones are written beside it");
+    verb.output("--task", o->task, {{".toml"}},
+                "TOML file: a task for 'tactus session', to saw in the guide; its bones are written beside it");
     verb.add("--bone", o->bone, "the donor with its osteotomies, or the jaw with its resection")
         .one_of({"fibula", "jaw"})
         .shows_default();

@@ -123,7 +123,7 @@ Verb plan_paddle_verb() {
                     .range(1.0, 1e5)
                     .needs(defect)
                     .shows_default();
-                verb.add("--picture", choice->picture, "bone, paddle and perforators: .png");
+                verb.output("--picture", choice->picture, {{".png"}}, "bone, paddle and perforators: .png");
                 return [choice] { return paddle(*choice); };
             },
             // Without --defect: the plan.

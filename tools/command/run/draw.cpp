@@ -33,7 +33,8 @@ int draw(const DrawChoice& choice) {
 Action declare_draw(VerbOptions& verb) {
     const auto choice = std::make_shared<DrawChoice>();
     add_patch_options(verb, choice->patch);
-    verb.add("-o,--out", choice->out, "file, .svg, .png or .pdf (default: SVG on standard output)");
+    verb.output("-o,--out", choice->out, {{".svg", ".png", ".pdf"}},
+                "file, .svg, .png or .pdf (default: SVG on standard output)");
     add_figure_options(verb, choice->figure);
     return [choice] { return draw(*choice); };
 }

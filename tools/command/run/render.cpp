@@ -148,7 +148,7 @@ Action add_render(VerbOptions& verb) {
     const auto scale = std::make_shared<std::optional<double>>();
     add_device_scale(verb, *scale);
     verb.add("--seconds", choice->seconds, "logical time to render, s").unit("s").shows_default().range(1e-3, 1e6);
-    verb.add("-o,--out", choice->out, "folder for the results").required();
+    verb.output("-o,--out", choice->out, OutputFormat::folder(), "folder for the results").required();
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.add("--jobs", choice->threads, "threads, 0: one per core").range(0, 64);
     verb.old("--threads", "--jobs");

@@ -210,10 +210,11 @@ namespace {
 Action add_replay(VerbOptions& verb) {
     const auto choice = std::make_shared<ReplayChoice>();
     verb.add("take", choice->take, "folder of a take, made with --record").required();
-    verb.add("-o,--out", choice->out,
-             "folder for the results: sounds, traces, bones, summary.json; of a run that was cut off as far as the "
-             "take reaches");
-    verb.add("--record", choice->record, "write the take again into this folder, with every value of the run");
+    verb.output("-o,--out", choice->out, OutputFormat::folder(),
+                "folder for the results: sounds, traces, bones, summary.json; of a run that was cut off as far as the "
+                "take reaches");
+    verb.output("--record", choice->record, OutputFormat::folder(),
+                "write the take again into this folder, with every value of the run");
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.flag("--anyway", choice->anyway, "replay even if assets have changed");
     verb.flag("--json", choice->json, "as JSON");

@@ -94,9 +94,11 @@ Action add_run(VerbOptions& verb) {
         .unit("ms")
         .shows_default()
         .range(1.0, 2000.0);
-    verb.add("-o,--out", choice->out, "folder for the results (default: PATCH-run, or PATCH-run-2 and so on)");
+    verb.output("-o,--out", choice->out, OutputFormat::folder(),
+                "folder for the results (default: PATCH-run, or PATCH-run-2 and so on)");
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
-    verb.add("--log", choice->log, "write the timing decisions to this file, for 'render --log'");
+    verb.output("--log", choice->log, OutputFormat::text(),
+                "write the timing decisions to this file, for 'render --log'");
     add_record_options(verb, choice->record, choice->record_values);
     verb.flag("--json", choice->json, "print the summary as JSON and nothing else");
     const Option window =

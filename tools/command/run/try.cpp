@@ -37,7 +37,8 @@ Action declare_try(VerbOptions& verb) {
     choice->patch = "saw-training";
     verb.add("patch", choice->patch, "patch with a hand: a file, or a name in the library").shows_default();
     verb.add("--seconds", choice->seconds, "stop after this time, s").unit("s").range(1e-3, 1e6);
-    verb.add("-o,--out", choice->out, "folder for the results (default: PATCH-run, or PATCH-run-2 and so on)");
+    verb.output("-o,--out", choice->out, OutputFormat::folder(),
+                "folder for the results (default: PATCH-run, or PATCH-run-2 and so on)");
     return [choice] { return try_out(*choice); };
 }
 

@@ -61,7 +61,7 @@ int sweep_plot(const SweepPlotChoice& choice) {
 Action declare_sweep_plot(VerbOptions& verb) {
     const auto choice = std::make_shared<SweepPlotChoice>();
     verb.add("folder", choice->folder, "folder of a sweep").required();
-    verb.add("-o,--out", choice->out, "figure, .svg, .png or .pdf").required();
+    verb.output("-o,--out", choice->out, {{".svg", ".png", ".pdf"}}, "figure, .svg, .png or .pdf").required();
     add_figure_options(verb, choice->picture);
     const Option figure = verb.add("--figure", choice->figure, "figure of the sweep file; default: its first");
     Option value =

@@ -25,7 +25,7 @@ struct SweepReportChoice {
 Action declare_sweep_report(VerbOptions& verb) {
     const auto choice = std::make_shared<SweepReportChoice>();
     verb.add("folder", choice->folder, "folder of a sweep").required();
-    verb.add("-o,--out", choice->out, "page; default: report.html in the folder");
+    verb.output("-o,--out", choice->out, {{".html"}}, "page; default: report.html in the folder");
     return [choice] {
         const analysis::SweepFolder folder(choice->folder, run::library_folder());
         const analysis::Results results(folder);

@@ -128,7 +128,8 @@ int sweep_run(const SweepRunChoice& choice) {
 Action declare_sweep_run(VerbOptions& verb) {
     const auto choice = std::make_shared<SweepRunChoice>();
     verb.add("sweep", choice->sweep, "sweep file, or a name in the library").required();
-    verb.add("-o,--out", choice->out, "folder of the sweep; an existing one is continued").required();
+    verb.output("-o,--out", choice->out, OutputFormat::folder(), "folder of the sweep; an existing one is continued")
+        .required();
     verb.add("--runner", choice->runner, "local: on this machine; slurm: as an array job; make: only write a Makefile")
         .one_of({"local", "slurm", "make"})
         .shows_default();

@@ -60,7 +60,7 @@ Action declare_score(VerbOptions& verb) {
     add_result_options(verb, choice->result, ResultFigure::some);
     verb.find("--json").about("as JSON: an object for one run, rows for several");
     verb.old("--report", "--out");
-    verb.add("--csv", choice->csv, "write a table with a line per run to this file");
+    verb.output("--csv", choice->csv, {{".csv"}}, "write a table with a line per run to this file");
     return [choice] { return score(*choice); };
 }
 

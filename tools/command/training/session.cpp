@@ -174,7 +174,9 @@ Action declare_session(VerbOptions& verb) {
         .required();
     verb.add("--trainee", choice->trainee, "pseudonym of the trainee: letters, digits, '-', '_', '.'; not a name")
         .required();
-    verb.add("-o,--out", choice->out, "folder of all sessions; this one is DIR/PSEUDONYM/NUMBER").required();
+    verb.output("-o,--out", choice->out, OutputFormat::folder(),
+                "folder of all sessions; this one is DIR/PSEUDONYM/NUMBER")
+        .required();
     verb.flag("--new", choice->is_new, "begin another session although the last one is not complete");
     verb.flag("--offline", choice->offline, "render the attempts instead of running them in real time");
     verb.add("--seconds", choice->run.seconds, "length of each attempt, s (default: that of the task)")

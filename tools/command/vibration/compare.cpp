@@ -62,8 +62,6 @@ int finish(const CompareChoice& choice, const report::ComparedPairs& found) {
 }
 
 int compare_one(const CompareChoice& choice, const analysis::CompareSettings& settings) {
-    if (!choice.plot.empty() && !report::is_figure_file(choice.plot))
-        throw Error(choice.plot.string() + ": a figure is written as .svg, .png or .pdf");
     const ComparedPair pair = analysis::compare_files(settings);
     if (!choice.plot.empty()) save_figure(report::draw_comparison(pair), choice.plot, choice.result.figure);
     const std::string no_error;
@@ -99,6 +97,7 @@ int compare_many(const CompareChoice& choice, const analysis::CompareSettings& s
 
 int compare(const CompareChoice& choice) {
     const bool many = fs::is_directory(choice.settings.reference) || fs::is_directory(choice.settings.output);
+    check_batch_output(choice.plot, {".svg", ".png", ".pdf"}, many);
     // Before the check of -o, which may be in it.
     if (many && !choice.plot.empty()) fs::create_directories(choice.plot);
     check_result_files(choice.result, {choice.settings.reference, choice.settings.output, choice.thresholds});
@@ -123,14 +122,15 @@ Action declare_compare(VerbOptions& verb) {
         .required();
     verb.add("--thresholds", choice->thresholds,
              "TOML file with the thresholds; keys and defaults: docs/reference/tables.md");
-    verb.add("--plot", choice->plot, "a figure, .svg, .png or .pdf; for folders: a folder of SVG files");
+    verb.output("--plot", choice->plot, OutputFormat::file_or_folder({".svg", ".png", ".pdf"}),
+                "a figure, .svg, .png or .pdf; for folders: a folder of SVG files");
     add_result_options(verb, choice->result, ResultFigure::some);
     verb.old("--report", "--out");
     verb.add("--band", choice->band,
              "plotted range, Hz (default: 20 Hz to half the sample rate of the slower record, at most 4 kHz); what is "
              "judged stays the same")
         .value_name("LOW:HIGH");
-    verb.add("--table", choice->table, "a row per pair, CSV");
+    verb.output("--table", choice->table, {{".csv"}}, "a row per pair, CSV");
     verb.add("--jobs", choice->jobs, "pairs at a time, 0: one per core").range(0, 256);
     verb.add("--reference-scale", settings.reference_scale, "units per full scale, such as m/s^2").shows_default();
     verb.add("--output-scale", settings.output_scale, "scale of the output, in the same unit").shows_default();

@@ -193,7 +193,7 @@ Action declare_exposure(VerbOptions& verb) {
              "the channels; of three others xyz)")
         .value_name("LETTERS");
     verb.flag("--uncalibrated", choice->uncalibrated, "interpret the values of an uncalibrated record as m/s^2");
-    verb.add("--table", choice->table, "a row per file, CSV");
+    verb.output("--table", choice->table, {{".csv"}}, "a row per file, CSV");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
     add_result_options(verb, choice->result, ResultFigure::none);
     return [choice] { return exposure(*choice); };

@@ -76,8 +76,8 @@ Action declare_measure(VerbOptions& verb) {
     verb.add("--input-channel", settings.input_channel, "input channel of the card, from 1").shows_default();
     verb.add("--rate", settings.rate, "sample rate of the card, Hz").unit("Hz").shows_default().range(1e3, 1e6);
     add_result_options(verb, choice->result, ResultFigure::none, {{".csv"}, "the response (default response.csv)"});
-    verb.add("--equaliser", choice->equaliser,
-             "also make the filter for the 'equaliser' node, as 'equalise' does: TOML file");
+    verb.output("--equaliser", choice->equaliser, {{".toml"}},
+                "also make the filter for the 'equaliser' node, as 'equalise' does: TOML file");
     verb.band("--band", settings.first, settings.last, "first and last frequency of the sweep, Hz");
     verb.add("--duration", settings.duration, "duration of the sweep, s").unit("s").shows_default().range(0.1, 1e3);
     verb.add("--pause", settings.pause, "silence after the sweep, s").unit("s").shows_default().range(0.05, 1e2);

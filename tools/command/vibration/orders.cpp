@@ -82,9 +82,6 @@ std::optional<analysis::WaterfallSettings> waterfall_of(const OrdersChoice& choi
             throw Error("--over and --against are of a waterfall; name its file with --waterfall");
         return std::nullopt;
     }
-    for (const std::filesystem::path& out : choice.waterfalls)
-        if (!report::is_figure_file(out) && out.extension() != ".csv" && out.extension() != ".json")
-            throw Error(fmt::format("{}: a waterfall is written as .svg, .png, .pdf, .csv or .json", out.string()));
     return analysis::WaterfallSettings{choice.over != "frequency", choice.against == "speed"};
 }
 
@@ -121,9 +118,9 @@ Action declare_orders(VerbOptions& verb) {
         .value_name("LOW:HIGH");
     verb.old("--range", "--band");
     verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
-    verb.add("--csv", choice->csv, "CSV file for the level over order");
-    verb.add("--waterfall", choice->waterfalls,
-             "file for the levels row by row: a figure, .svg, .png or .pdf, or a table, .csv or .json; repeatable")
+    verb.output("--csv", choice->csv, {{".csv"}}, "CSV file for the level over order");
+    verb.output("--waterfall", choice->waterfalls, {{".svg", ".png", ".pdf", ".csv", ".json"}},
+                "file for the levels row by row: a figure, .svg, .png or .pdf, or a table, .csv or .json; repeatable")
         .one_each();
     verb.add("--over", choice->over, "columns of a waterfall: orders (default) or frequency")
         .one_of({"orders", "frequency"});

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus response: frequency response and coherence between two channels of a record.
 #include "assets/file/json.hpp"
-#include "assets/file/whole_file.hpp"
-#include "assets/table/csv_file.hpp"
 #include "assets/sound/response_file.hpp"
+#include "assets/table/csv_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/vibration/two_channels.hpp"
@@ -88,7 +87,7 @@ Action declare_response(VerbOptions& verb) {
     verb.add("--segment", choice->segment, "samples (default: about 0.75 s); a peak needs 10 bins")
         .range(2, 1 << 26);
     verb.add("--overlap", choice->overlap, "overlap as a fraction of a segment (default 0.5)").range(0.0, 0.99);
-    verb.add("--csv", choice->csv, "CSV file with H1, H2, Hv and coherence over frequency");
+    verb.output("--csv", choice->csv, {{".csv"}}, "CSV file with H1, H2, Hv and coherence over frequency");
     add_result_options(verb, choice->result, ResultFigure::styled,
                        {{".csv"}, "the response as 'measure' writes it, for 'equalise'"});
     verb.old("--plot", "--out");

@@ -140,6 +140,8 @@ int spectrum(const SpectrumChoice& choice) {
     const bool many = files.size() > 1;
     settings_of(choice, false);  // refuses what cannot be read, before the files are
     const report::SpectrumMethod method = method_of(choice);
+    for (const fs::path& out : {choice.csv, choice.cepstrum}) check_batch_output(out, {".csv"}, many);
+    if (!many) check_batch_output(choice.plot, {".svg", ".png", ".pdf"}, many);
     if (many)
         for (const fs::path& folder : {choice.csv, choice.plot, choice.cepstrum})
             if (!folder.empty() && !(folder == choice.plot && report::is_figure_file(folder)))
@@ -203,13 +205,14 @@ Action declare_spectrum(VerbOptions& verb) {
         .unit("Hz")
         .shows_default()
         .range(1e-3, 1e6);
-    verb.add(
-        "--cepstrum", choice->cepstrum,
+    verb.output(
+        "--cepstrum", choice->cepstrum, OutputFormat::file_or_folder({".csv"}),
         "CSV file with quefrency and cepstrum per channel, and its peaks in the text; for several files: a folder");
     const Option only_psd = verb.flag("--psd-only", choice->only_psd, "the spectrum alone, in one pass: --csv, --json");
-    verb.add("--csv", choice->csv, "CSV file with frequency and spectrum per channel; for several files: a folder");
-    verb.add("--plot", choice->plot,
-             "figure, .svg, .png or .pdf: several files in one plot; or a folder for a figure of each");
+    verb.output("--csv", choice->csv, OutputFormat::file_or_folder({".csv"}),
+                "CSV file with frequency and spectrum per channel; for several files: a folder");
+    verb.output("--plot", choice->plot, OutputFormat::file_or_folder({".svg", ".png", ".pdf"}),
+                "figure, .svg, .png or .pdf: several files in one plot; or a folder for a figure of each");
     add_result_options(verb, choice->result, ResultFigure::some);
     verb.old("--report", "--out");
     verb.add("--band", choice->band, "plotted range, Hz (default: 20 Hz to half the sample rate)")
@@ -219,7 +222,7 @@ Action declare_spectrum(VerbOptions& verb) {
              "Hz:BPFI:5\" with five harmonics; repeatable")
         .value_name("FREQUENCY:LABEL[:HARMONICS]")
         .one_each();
-    verb.add("--table", choice->table, "CSV file with one row per file and channel");
+    verb.output("--table", choice->table, {{".csv"}}, "CSV file with one row per file and channel");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
     for (const char* other : {"--octave-filters", "--cepstrum", "--envelope", "--plot", "--mark", "--table"})
         verb.find(other).excludes(only_psd);

@@ -121,8 +121,8 @@ Action declare_validate(VerbOptions& verb) {
         .one_of({"displacement", "acceleration", "none"});
     add_result_options(verb, choice->result, ResultFigure::some);
     verb.old("--report", "--out");
-    verb.add("--plot", choice->plot, "folder for SVG figures of the runs");
-    verb.add("--table", choice->table, "CSV file with one row per run");
+    verb.output("--plot", choice->plot, OutputFormat::folder(), "folder for SVG figures of the runs");
+    verb.output("--table", choice->table, {{".csv"}}, "CSV file with one row per run");
     verb.add("--jobs", choice->jobs, "runs at a time, 0: one per core").range(0, 256);
     verb.old(port_was_out);
     return [choice] { return validate(*choice); };

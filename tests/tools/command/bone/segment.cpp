@@ -219,7 +219,7 @@ TEST_CASE("segment refuses what it cannot use with one line and writes nothing",
                       with_seeds = " --seeds " + folder / "seeds.json";
     refused(ct, "name the result");
     refused(ct + out, "give the seeds");
-    refused(ct + with_seeds + " -o " + folder / "out.txt", "segment writes .nrrd");
+    refused(ct + with_seeds + " -o " + folder / "out.txt", "written as .vdb or .nrrd");
     refused(ct + with_seeds + " -o " + ct, "this is a source");
     refused(ct + with_seeds + out + " --certainty " + folder / "out.nrrd", "two results have this name");
     refused(ct + " --seeds " + folder / "out.nrrd" + out, "out.nrrd");

@@ -92,7 +92,7 @@ TEST_CASE("a guide that must not be printed is refused and leaves nothing behind
         CHECK_THAT(done.err, ContainsSubstring(why));
         CHECK(!made.has(out));
     };
-    refused("", "written as .stl, .3mf or .ply", "guide.obj");
+    refused("", "written as .stl, .3mf, .ply", "guide.obj");
     refused("--label Größe", "cannot be engraved");
     refused("--label 12345678901234567", "longer than 16 characters");
     // The plan's own meshes are no place for a guide.
