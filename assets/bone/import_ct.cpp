@@ -90,12 +90,12 @@ std::string list_of_labels(const volume::ScanVolume& about, const volume::Tally&
 void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const ImportOptions& options,
                 const std::filesystem::path& file) {
     if (options.rescale) about.hu = volume::HuKind::calibrated;
-    if (about.hu != volume::HuKind::scanner) return;
+    if (volume::are_hu(about.hu, static_cast<double>(tally.high))) return;
     throw Error(
         fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000). Calibrate them with two points VALUE:HU, "
-                    "as in --hu-calibration 60:-1000,1100:40 (air and water or muscle), or convert the "
-                    "file first",
-                    file.string(), tally.low, tally.high));
+                    "as in --hu-calibration 60:-1000,1100:40 (air and water or muscle), or state --rescale 1,0 if they "
+                    "are HU of a part without air",
+                    file.string(), tally.low + 0.0f, tally.high + 0.0f));
 }
 
 SparseImport import_ct(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {

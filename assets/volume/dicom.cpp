@@ -561,7 +561,10 @@ public:
         const bool rescaled = first.has_rescale && (first.rescale_type.empty() || first.rescale_type == "HU");
         if (first.modality == "CT" && about.hu == HuKind::scanner && rescaled && first.intercept != 0.0)
             about.hu = HuKind::calibrated;
-        if (first.has_rescale && !rescaled) about.hu = HuKind::scanner;
+        // These modalities measure other quantities, whatever their range.
+        constexpr std::array<std::string_view, 4> others{"MR", "PT", "NM", "US"};
+        const bool is_other = std::ranges::find(others, std::string_view(first.modality)) != others.end();
+        if ((first.has_rescale && !rescaled) || (is_other && about.hu != HuKind::none)) about.hu = HuKind::scanner;
     }
 
 private:

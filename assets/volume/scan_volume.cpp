@@ -20,6 +20,10 @@ std::string_view name_of(HuKind kind) {
     return "none";
 }
 
+bool are_hu(HuKind kind, double greatest) {
+    return kind == HuKind::calibrated || (kind == HuKind::masked && greatest > 255.0);
+}
+
 std::string_view name_of(VolumeKind kind) {
     return kind == VolumeKind::ct ? "ct" : kind == VolumeKind::labels ? "labels" : "labels?";
 }

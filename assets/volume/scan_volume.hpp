@@ -28,6 +28,10 @@ enum class VolumeKind {
     maybe_labels  ///< floating-point samples with values like those of labels: the file does not state which
 };
 
+/// Whether the values are in HU. A masked volume is not if its greatest value is 255 or less: bone exceeds that, and
+/// masked images of 8 bits, probabilities and scaled values do not.
+bool are_hu(HuKind kind, double greatest);
+
 std::string_view name_of(HuKind kind);      ///< "calibrated", "masked", "scanner", "none"
 std::string_view name_of(VolumeKind kind);  ///< "ct", "labels", "labels?"
 std::string_view name_of(Frame frame);      ///< "LPS", "RAS"

@@ -169,6 +169,11 @@ Inspection inspect_volume(const std::filesystem::path& path, const InspectionOpt
     found.notes = about.notes;
     found.histogram = volume::histogram_of(found.grey.values, 24);
     found.range = {layers.range().first, layers.range().second};
+    found.is_in_hu = volume::are_hu(about.hu, found.range[1]);
+    if (!found.is_in_hu && about.kind != volume::VolumeKind::labels)
+        found.notes.push_back(
+            "the values are not HU, as of MR, of 8-bit images or of a scan without calibration; 'import' needs "
+            "--hu-calibration or --rescale");
     found.unit_question = volume::unit_question(about);
     found.unit = found.unit_question.empty() ? "mm" : "";
     if (about.kind == volume::VolumeKind::labels) inspect_segments(found, *reader);

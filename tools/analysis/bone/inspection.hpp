@@ -29,6 +29,7 @@ struct Inspection {
     bool uniform = true;
     double tilt_deg = 0.0;
     std::string hu;                    ///< "calibrated", "masked", "scanner" or "none"
+    bool is_in_hu = false;             ///< of a scan: the values are HU
     std::array<double, 2> range{};     ///< range of the values: HU or scanner values, labels, or kg/m³ for a bone
     std::optional<double> threshold;   ///< for a CT: the one that import uses without --threshold
     std::string threshold_from;        ///< its method

@@ -64,6 +64,7 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
             "the patient");
     out.scan = volume::lps_grid(std::move(read));
     const volume::ValueRange range = volume::range_of(out.scan.values);
+    out.is_in_hu = volume::are_hu(out.hu, static_cast<double>(range.high));
     if (settings.threshold) {
         out.threshold = *settings.threshold;
         out.threshold_from = "given";
@@ -76,9 +77,9 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
         out.threshold_from = found.how;
     }
 
-    // Scanner numbers do not say what is metal.
-    const double metal = settings.metal.value_or(
-        out.hu == volume::HuKind::scanner ? std::numeric_limits<double>::infinity() : common_for_metal);
+    // Only in HU is the value of metal known.
+    const double metal =
+        settings.metal.value_or(out.is_in_hu ? common_for_metal : std::numeric_limits<double>::infinity());
     std::vector<std::uint8_t> inside(out.scan.count(), 0);
     std::array<int, 3> low = out.scan.size, high{-1, -1, -1};
     std::size_t v = 0, voxels = 0;

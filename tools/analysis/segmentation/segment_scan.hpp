@@ -32,6 +32,7 @@ struct SegmentSettings {
 struct ScanGraph {
     volume::Grid scan;               ///< values on LPS axes
     volume::HuKind hu = volume::HuKind::calibrated;
+    bool is_in_hu = true;
     std::vector<std::string> notes;  ///< corrections while reading, and excluded parts; one sentence each
     double threshold = 0.0;
     std::string threshold_from;      ///< "given", or the method

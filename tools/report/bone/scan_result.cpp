@@ -419,9 +419,9 @@ const Fields<InspectedFile>& inspection_fields() {
             .text("", "suggested threshold",
                   [](const F& f) {
                       return f.found->threshold
-                                 ? fmt::format(
-                                       "{:g}{} ({}); import uses it unless --threshold is given", *f.found->threshold,
-                                       f.found->hu == "scanner" ? ", a scanner number" : " HU", f.found->threshold_from)
+                                 ? fmt::format("{:g}{} ({}); import uses it unless --threshold is given",
+                                               *f.found->threshold, f.found->is_in_hu ? " HU" : ", not in HU",
+                                               f.found->threshold_from)
                                  : std::string();
                   })
             .text("unit", "", [](const F& f) { return if_any(f.found->unit); })
@@ -483,9 +483,8 @@ const Fields<SegmentedFile>& segmentation_fields() {
             .child("threshold", "", scan_threshold_fields(), [](const S& s) { return s.scan; })
             .text("", "bone from",
                   [](const S& s) {
-                      return fmt::format("{:g}{} ({}), {} voxels", s.scan->threshold,
-                                         s.scan->hu == volume::HuKind::scanner ? "" : " HU", s.scan->threshold_from,
-                                         s.scan->graph.nodes());
+                      return fmt::format("{:g}{} ({}), {} voxels", s.scan->threshold, s.scan->is_in_hu ? " HU" : "",
+                                         s.scan->threshold_from, s.scan->graph.nodes());
                   })
             .rows("labels", "fragments", label_fields(), of(&Found::labels))
             .rows("touching", "", touching_fields(), of(&Found::touching))

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <numbers>
 
 namespace fs = std::filesystem;
@@ -133,6 +134,56 @@ TEST_CASE("a render leaves the cut bone, and it is smaller and goes out as a mes
     CHECK(mesh["volume_mm3"].get<double>() > 1000.0);
     CHECK(summary["carve"]["removed_mm3"] > 5.0);
     CHECK(std::count(summary["files"].begin(), summary["files"].end(), "bone.vdb") == 1);
+}
+
+TEST_CASE("info says when values are not HU, and prints neither a negative zero nor NaN") {
+    const BoneFolder folder;
+    // A ball of the greatest value in the least; -0 beside 0, and NaN where a program found no value.
+    const auto write = [&](float least, float greatest, volume::WrittenType type) {
+        volume::Grid grid{{32, 32, 32}, Vec3(0.0), Vec3(2e-3), {}};
+        grid.values.assign(grid.count(), least);
+        for (int k = 0; k < 32; ++k)
+            for (int j = 0; j < 32; ++j)
+                for (int i = 0; i < 32; ++i) {
+                    const double r = glm::length(Vec3(i, j, k) - Vec3(15.5));
+                    if (r < 8.0) grid.at(i, j, k) = greatest - static_cast<float>(r) * 0.02f * (greatest - least);
+                }
+        grid.at(0, 0, 0) = greatest;
+        if (type == volume::WrittenType::float32) {
+            grid.at(1, 0, 0) = std::numeric_limits<float>::quiet_NaN();
+            grid.at(2, 0, 0) = -std::numeric_limits<float>::infinity();
+        }
+        volume::write_volume(grid, type, folder / "scan.nrrd");
+    };
+    const auto check = [&](bool is_in_hu) {
+        const json found = folder.answer("info " + folder / "scan.nrrd --unit mm --json");
+        const test::Outcome text = folder.tactus("info " + folder / "scan.nrrd --unit mm");
+        CAPTURE(text.out, found.dump(2));
+        for (const json& end : found["range"]) CHECK(end.is_number());
+        CHECK(found["range"].dump().find("-0.0") == std::string::npos);
+        CHECK(text.out.find("nan") == std::string::npos);
+        CHECK(text.out.find("-0 ") == std::string::npos);
+        const bool says_hu = text.out.find(" HU (") != std::string::npos;
+        const bool says_not = text.out.find("the values are not HU") != std::string::npos;
+        CHECK(says_hu == is_in_hu);
+        CHECK(says_not != is_in_hu);
+        if (!is_in_hu) CHECK(text.out.find("not in HU (") != std::string::npos);
+        const test::Outcome imported = folder.tactus("import " + folder / "scan.nrrd --unit mm -o " + folder / "b.vdb");
+        CHECK((imported.code == 0) == is_in_hu);
+        if (!is_in_hu) CHECK(imported.err.find("are not HU") != std::string::npos);
+    };
+    write(-0.0f, 1.0f, volume::WrittenType::float32);    // probabilities, or HU / 1000
+    check(false);
+    write(-0.0f, 250.5f, volume::WrittenType::float32);  // micro-CT of 8 bits, filtered and masked
+    check(false);
+    write(7.0f, 250.0f, volume::WrittenType::int16);     // the same, not masked
+    check(false);
+    write(12.0f, 1800.0f, volume::WrittenType::int16);   // MR
+    check(false);
+    write(-0.0f, 1200.0f, volume::WrittenType::float32);  // a masked CT
+    check(true);
+    write(-1000.0f, 1200.0f, volume::WrittenType::float32);
+    check(true);
 }
 
 TEST_CASE("info lists each of overlapping segments from its own layer, and those without voxels") {
