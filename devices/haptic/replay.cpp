@@ -44,6 +44,17 @@ double read_trigger(Options& options) {
     return choice == 0 ? 0.0 : choice == 1 ? from : std::numeric_limits<double>::infinity();
 }
 
+/// Reads the recording. The Error of one that lacks the tool or the trial names the option that asks for it.
+table::Trajectory read_recording(const Options& options, const std::string& file,
+                                 const table::TrajectorySelection& selection) {
+    try {
+        return table::read_trajectory(file, selection);
+    } catch (const Error& error) {
+        const char* const option = options.has("tool") ? "tool" : options.has("trial") ? "trial" : "file";
+        throw Error(options.where(option), fmt::format("{}: option '{}': {}", options.owner(), option, error.what()));
+    }
+}
+
 }  // namespace
 
 std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& resolve) {
@@ -67,7 +78,7 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     if (file.empty())
         throw Error(options.where(),
                     fmt::format("{} needs a recording; name it with the option 'file'", options.owner()));
-    table::Trajectory trajectory = table::read_trajectory(resolve(file), selection);
+    table::Trajectory trajectory = read_recording(options, resolve(file), selection);
     // The tool's working direction is −z of the device, as for the simulated hand.
     if (at_rest) simulate::align_to_rest(trajectory.samples, Vec3(0.0, 0.0, -1.0), reach);
     simulate::TrajectoryRules rules = trajectory.rules();

@@ -130,6 +130,11 @@ TEST_CASE("an unknown driver, a missing file name and a missing file are refused
                                                 ContainsSubstring("simulated, scripted, replay"));
     CHECK_THROWS_WITH(open("replay", {}), ContainsSubstring("saw.toml:3:1") && ContainsSubstring("'file'"));
     CHECK_THROWS_WITH(open("replay", {{"file", "/nowhere.csv", {}}}), ContainsSubstring("/nowhere.csv"));
+    // The option that the recording cannot meet is named, with the file that says so.
+    const Recording recording;
+    CHECK_THROWS_WITH(open("replay", {{"file", recording.path.string(), {}}, {"tool", "Tool", {"--set replay.tool=Tool", 0, 0}}}),
+                      ContainsSubstring("--set replay.tool=Tool: ") && ContainsSubstring("option 'tool'") &&
+                          ContainsSubstring("there is no column Tool_px_mm"));
 }
 
 TEST_CASE("every driver has a name and a summary") {
