@@ -123,8 +123,13 @@ std::string TrainingSession::attempt_name() const {
 
 /// An attempt of which the session does not say that it was completed keeps its take under another name.
 void TrainingSession::put_aside() const {
-    const fs::path left = folder_ / attempt_name();
+    const fs::path left = next_attempt();
     if (!fs::exists(left)) return;
+    const auto files = fs::recursive_directory_iterator(left);
+    if (std::none_of(begin(files), end(files), [](const auto& entry) { return !entry.is_directory(); })) {
+        fs::remove_all(left);
+        return;
+    }
     for (int n = 1; n < 10'000; ++n) {
         const fs::path other = fmt::format("{}-cut-off-{}", left.string(), n);
         if (fs::exists(other)) continue;
@@ -136,14 +141,6 @@ void TrainingSession::put_aside() const {
         return;
     }
     throw Error(fmt::format("{}: too many attempts were cut off", left.string()));
-}
-
-fs::path TrainingSession::begin_attempt() const {
-    const fs::path folder = folder_ / attempt_name();
-    std::error_code failure;
-    fs::create_directories(folder, failure);
-    if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), failure.message()));
-    return folder;
 }
 
 void TrainingSession::complete_attempt(double seconds, bool ended_early) {

@@ -28,7 +28,7 @@ public:
         bool is_new = false;  ///< start a new session although the last one is not complete
     };
     /// Opens the trainee's last session if it is not complete, otherwise starts the next one; locks it until destroyed.
-    /// Moves interrupted attempts aside. Throws Error if the session to resume has other tasks, if another program has
+    /// Moves interrupted attempts aside, and removes those without a file, which never began. Throws Error if the session to resume has other tasks, if another program has
     /// locked it, or if the folder cannot be written.
     explicit TrainingSession(const Choice& choice);
     TrainingSession(const TrainingSession&) = delete;
@@ -40,8 +40,9 @@ public:
     std::size_t done() const { return file_.attempts.size(); }
     bool is_complete() const { return done() == count(); }
     std::size_t count() const { return file_.tasks.size(); }
-    /// Creates and returns the folder of the next attempt.
-    std::filesystem::path begin_attempt() const;
+    /// Folder of the next attempt. The run makes it: an attempt that cannot be started leaves none, which would be taken
+    /// for an interrupted one.
+    std::filesystem::path next_attempt() const { return folder_ / attempt_name(); }
     /// Marks the next attempt as completed, so that it is never repeated. Throws Error.
     void complete_attempt(double seconds, bool ended_early);
 

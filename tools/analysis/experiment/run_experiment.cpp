@@ -152,8 +152,14 @@ double end_of_targets(const std::string& text) {
 
 class Session {
 public:
-    Session(const ExperimentChoice& choice, const ExperimentHooks& hooks, const std::atomic<bool>& stop)
-        : choice_(choice), protocol_(choice.protocol), hooks_(hooks), stop_(stop), folder_(choice.out, protocol_) {}
+    Session(const ExperimentChoice& choice, const ExperimentHooks& hooks, const std::atomic<bool>& stop,
+            compile::AssetCache& assets)
+        : choice_(choice),
+          protocol_(choice.protocol),
+          hooks_(hooks),
+          stop_(stop),
+          assets_(assets),
+          folder_(choice.out, protocol_) {}
 
     ExperimentEnd run() {
         ExperimentEnd end;
@@ -308,8 +314,7 @@ private:
         // What a trial left that was cut off.
         std::error_code failure;
         fs::remove_all(at, failure);
-        fs::create_directories(at, failure);
-        if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", at.string(), failure.message()));
+        if (failure) throw Error(fmt::format("{}: cannot be deleted: {}", at.string(), failure.message()));
         run::RunChoice run = trial_choice(protocol_, spec);
         run.overrides.settings.insert(run.overrides.settings.end(), choice_.settings.begin(), choice_.settings.end());
         run.overrides.assets.insert(run.overrides.assets.end(), choice_.assets.begin(), choice_.assets.end());
@@ -324,6 +329,8 @@ private:
             record.task = protocol_.tasks[spec.task].name;
             if (simulated_) {
                 const std::string targets = simulated_->hand_targets(spec);
+                fs::create_directories(at, failure);
+                if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", at.string(), failure.message()));
                 file::write_whole_file(at / "hand.txt", targets);
                 run.overrides.assets.push_back("hand=" + (at / "hand.txt").string());
                 run.seconds = std::min(*run.seconds, end_of_targets(targets) + 0.5);
@@ -445,13 +452,13 @@ private:
     const Protocol& protocol_;
     const ExperimentHooks& hooks_;
     const std::atomic<bool>& stop_;
+    compile::AssetCache& assets_;
     ExperimentFolder folder_;
     experiment::SubjectEntry entry_;
     fs::path home_;
     std::vector<TrialRecord> trials_;
     std::optional<SimulatedSubject> simulated_;
     std::map<std::size_t, bool> has_hand_;  ///< the patch of each task
-    compile::AssetCache assets_;
 };
 
 }  // namespace
@@ -602,9 +609,30 @@ void check_tasks(const Protocol& protocol, compile::AssetCache& assets, const st
         }
 }
 
+namespace {
+
+/// Throws Error if a patch does not accept --set and --asset, before the subject has a folder and a row of the order.
+void check_overrides(const ExperimentChoice& choice, compile::AssetCache& assets) {
+    for (std::size_t task = 0; task < std::max<std::size_t>(choice.protocol.tasks.size(), 1); ++task) {
+        TrialSpec spec;
+        spec.task = task;
+        spec.level = choice.protocol.stimulus ? choice.protocol.stimulus->min : 0.0;
+        run::RunChoice run = trial_choice(choice.protocol, spec);
+        run.overrides.settings.insert(run.overrides.settings.end(), choice.settings.begin(), choice.settings.end());
+        run.overrides.assets.insert(run.overrides.assets.end(), choice.assets.begin(), choice.assets.end());
+        if (choice.model && !choice.protocol.tasks.empty() && !choice.protocol.tasks[task].ideal.empty())
+            run.overrides.assets.push_back("hand=" + choice.protocol.tasks[task].ideal.string());
+        run::load_plan(run, assets);
+    }
+}
+
+}  // namespace
+
 ExperimentEnd run_experiment(const ExperimentChoice& choice, const ExperimentHooks& hooks,
                              const std::atomic<bool>& stop) {
-    return Session(choice, hooks, stop).run();
+    compile::AssetCache assets;
+    check_overrides(choice, assets);
+    return Session(choice, hooks, stop, assets).run();
 }
 
 }  // namespace tactus::analysis

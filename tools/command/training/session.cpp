@@ -150,7 +150,7 @@ int run_session(const SessionChoice& choice) {
     int worst = done;
     while (!session.is_complete() && !stop) {
         const training::TaskFile& task = tasks[session.done()];
-        const fs::path attempt = session.begin_attempt();
+        const fs::path attempt = session.next_attempt();
         say(stderr, fmt::format("task {} of {}: {}\n{}{}", session.done() + 1, session.count(), task.title, task.about,
                                 task.about.empty() ? "" : "\n"));
         const window::ViewedRunChoice run = attempt_choice(choice, task, attempt);

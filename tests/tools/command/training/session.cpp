@@ -123,6 +123,25 @@ TEST_CASE("Ctrl-C ends the attempt and the session, and the same command goes on
     CHECK(json::parse(slurp(session / "session.json"))["complete"] == true);
 }
 
+TEST_CASE("a start that fails leaves no attempt, and is not taken for an interrupted one") {
+    const Folder folder;
+    const fs::path session = folder.path / "out/P01/1";
+    const std::string line =
+        "session mandible-canal --trainee P01 --seconds 0.2 --out " + (folder.path / "out").string();
+    // There is no such device.
+    const Outcome failed = folder.tactus(line + " --set hand.device=falcon");
+    CAPTURE(failed.err);
+    CHECK(failed.code != 0);
+    CHECK_FALSE(fs::exists(session / "01-mandible-canal"));
+    // As an earlier version left it.
+    fs::create_directories(session / "01-mandible-canal/take/streams");
+    const Outcome again = folder.tactus(line + " --offline");
+    CAPTURE(again.err);
+    CHECK(again.code == 0);
+    CHECK(fs::exists(session / "01-mandible-canal/run/summary.json"));
+    CHECK_FALSE(fs::exists(session / "01-mandible-canal-cut-off-1"));
+}
+
 TEST_CASE("a session is refused before anything is made when its trainee or a task is wrong") {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
