@@ -9,6 +9,7 @@
 #include "dsp/signal/spectrum/decibels.hpp"
 #include "dsp/signal/spectrum/fundamental.hpp"
 #include "dsp/signal/spectrum/level.hpp"
+#include "dsp/signal/spectrum/mains.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tactus::signal {
@@ -28,7 +30,8 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
-constexpr double min_coherence = 0.5;  // of copies: others are compared by their statistics
+constexpr double max_order_gap_db = 6.0;  // beyond it an order is in one take only
+constexpr double min_coherence = 0.5;  // of copies; other takes are compared by their statistics over time
 
 /// A take resampled to the common rate, in pieces.
 class Stream {
@@ -69,7 +72,7 @@ struct Stretch {
     std::vector<double> reference, output;
 };
 
-/// The loudest of consecutive sections of this many samples; the whole of shorter takes.
+/// The loudest of consecutive sections of `length` samples; all of takes that are shorter.
 Stretch loudest_stretch(const Take& reference, const Take& output, std::size_t length) {
     Stream r(reference, 0.0), d(output, 0.0);
     Stretch best;
@@ -156,7 +159,7 @@ std::pair<Spectrum, Spectrum> spectra_of(Axes axes, std::size_t segment) {
     return sum;
 }
 
-/// Power in the band. Throws Error when it is negligible relative to the peak, as for a constant.
+/// Power in the band. Throws Error if it is negligible relative to the peak, as of a constant.
 double power_in_band(double peak, const Spectrum& density, const Comparison& result, const char* name) {
     const double power = band_power(density, result.lowest, result.highest);
     if (!(std::sqrt(power) > silence * peak))
@@ -171,20 +174,34 @@ FundamentalEstimate fundamental_of(const Take& take) {
     return stream.estimate();
 }
 
-/// Sets the fundamentals of both takes, and the rates that may be hum.
-void find_fundamentals(const Take& reference, const Take& output, Comparison& result) {
+/// Whether two takes have the same orders at these rates: each at least 2, and none that the other lacks.
+bool have_same_orders(const Spectrum& reference, double reference_hz, const Spectrum& output, double output_hz,
+                      double highest) {
+    constexpr double lacks = std::numeric_limits<double>::infinity();
+    return harmonic_error(reference, reference_hz, output, output_hz, highest).value_or(lacks) <= max_order_gap_db &&
+           harmonic_error(output, output_hz, reference, reference_hz, highest).value_or(lacks) <= max_order_gap_db;
+}
+
+/// Sets the fundamentals of both takes, and the rates that may be hum. A certain rate in the other take settles that a
+/// rate near it is the saw's: hum does not follow the speed of a saw. Not if that rate is at the mains too, nor if the
+/// orders differ: hum in one take is not the saw in the other.
+void find_fundamentals(const Take& reference, const Take& output, const Spectrum& sharp_reference,
+                       const Spectrum& sharp_output, Comparison& result) {
     const FundamentalEstimate r = fundamental_of(reference), d = fundamental_of(output);
-    const auto set = [](const FundamentalEstimate& own, const FundamentalEstimate& other, double& hz, double& hum_hz) {
-        const bool is_of_saw = own.may_be_hum && other.is_certain() &&
-                               std::abs(own.frequency / other.frequency - 1.0) < speed_range;
-        if (own.is_certain() || is_of_saw) hz = own.frequency;
+    const auto is_of_saw = [&](const FundamentalEstimate& own, const FundamentalEstimate& other) {
+        return own.may_be_hum && other.is_certain() && !is_mains_order(other.frequency) &&
+               std::abs(own.frequency / other.frequency - 1.0) < speed_range &&
+               have_same_orders(sharp_reference, r.frequency, sharp_output, d.frequency, result.highest);
+    };
+    const auto set = [&](const FundamentalEstimate& own, const FundamentalEstimate& other, double& hz, double& hum_hz) {
+        if (own.is_certain() || is_of_saw(own, other)) hz = own.frequency;
         else if (own.may_be_hum) hum_hz = own.frequency;
     };
     set(r, d, result.reference_hz, result.reference_hum_hz);
     set(d, r, result.output_hz, result.output_hum_hz);
 }
 
-/// Fraction of the variance of a take, at its own rate, that a power in the band is.
+/// A power in the band as a fraction of the variance of the take at its own sample rate.
 double fraction_inside(const Take& take, double power) {
     Level level;
     const Take::Blocks blocks = take.open();
@@ -222,17 +239,17 @@ void score_spectra(Axes axes, const ComparisonOptions& options, SpectrogramSimil
     result.cosine_500 = spectral_cosine(powers, low, result.touched());
     result.cosine_1000 = spectral_cosine(powers, low, high);
     result.touch_cosine = spectral_cosine(powers, low, high, options.touch);
-    double felt_reference = 0.0, felt_output = 0.0;
+    double perceived_reference = 0.0, perceived_output = 0.0;
     for (std::size_t k = 0; k < a.power.size(); ++k) {
         const double f = a.frequency(k);
         if (f < low || f > high) continue;
         const double weight = std::pow(10.0, 0.1 * touch_weight_db(f, options.touch));
-        felt_reference += weight * a.power[k];
-        felt_output += weight * gain * gain * b.power[k];
+        perceived_reference += weight * a.power[k];
+        perceived_output += weight * gain * gain * b.power[k];
     }
-    result.touch_gap_db = decibels(felt_output / felt_reference);
+    result.touch_gap_db = decibels(perceived_output / perceived_reference);
 
-    // A band that reaches beyond what can be trusted does not count; the one of 1000 Hz does.
+    // Bands that extend beyond the valid range are left out, except that of 1000 Hz.
     const double last_centre = high < 0.999 * max_frequency ? high / std::pow(10.0, 0.05) : high;
     result.third_octaves =
         third_octave_errors({fine_reference.power, fine_output.power, fine_reference.df}, low, last_centre, gain);
@@ -273,7 +290,7 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     result.output_kurtosis = CourseStatistics(output.frames()).kurtosis();
     result.statistics = statistics_difference(reference.frames(), output.frames());
     if (!waveforms) return;
-    // These compare all frequencies of the waveforms.
+    // These scores use all frequencies of the waveforms, so both takes must be valid up to 1 kHz.
     if (result.highest >= 0.999 * max_frequency) {
         result.st_sim = waveforms->st_sim();
         result.spqi = waveforms->spqi();
@@ -282,7 +299,7 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     const CrossSpectra cross = crossed->spectra();
     result.coherence = cross.coherence();
     result.coherence_step = cross.df;
-    // Only where the reference has signal: between its lines there is unrelated noise.
+    // Averaged over bins with signal in the reference: between its lines there is unrelated noise.
     double greatest = 0.0, sum = 0.0, count = 0.0;
     const auto in_band = [&](std::size_t k) {
         return cross.frequency(k) >= result.lowest && cross.frequency(k) <= result.highest;
@@ -363,10 +380,11 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     result.alignment =
         align_takes(loud.reference, loud.output, rate, result.lowest, result.highest, options.longest_delay);
 
-    // Slow modulation that both have makes peaks of chance: what was recorded together is coherent somewhere.
+    // Slow modulation of both takes causes high chance peaks of the correlation. Takes that were recorded together are
+    // coherent in some band.
     if (result.alignment.significant && !is_coherent(loud, result)) result.alignment = {};
 
-    // A take in memory is read once only.
+    // A take that fits in memory is not read again.
     const auto kept = [&](const Take& take, const std::vector<double>& samples) {
         return Stream(take, 0.0).size() == samples.size() ? Take(std::span<const double>(samples), rate) : take;
     };
@@ -383,10 +401,10 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
         axes.push_back({options.reference_axes[i], options.output_axes[i], pair.reference_start, pair.output_start, 1.0,
                         pair.sign, pair.common});
     const auto [sharp_reference, sharp_output] = spectra_of(axes, sharp);
-    find_fundamentals(reference, output, result);
+    find_fundamentals(reference, output, sharp_reference, sharp_output, result);
     const double ratio = result.output_hz / result.reference_hz;
     const bool one_saw = std::abs(ratio - 1.0) < speed_range;
-    // Both rates are known and similar: the output is resampled to the reference's.
+    // The output is resampled to the reference's rate if both rates are known and similar.
     if (one_saw && !result.alignment.significant && std::abs(ratio - 1.0) >= 1e-5)
         for (Pair& axis : axes) axis.speed = result.speed_ratio = ratio;
     SpectrogramSimilarity spectrograms(rate, result.lowest, result.highest);
@@ -396,7 +414,7 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
         result.reference_inside = fraction_inside(reference, result.reference_rms * result.reference_rms);
         result.output_inside = fraction_inside(output, result.output_rms * result.output_rms);
     }
-    // For a saw at another speed the orders are compared, each take at its own rate.
+    // The orders of saws at different speeds are compared, each at the rate of its take.
     result.harmonic_error_db = harmonic_error(sharp_reference, result.reference_hz, sharp_output,
                                               one_saw ? result.output_hz : result.reference_hz, result.highest);
     result.lines = match_lines(sharp_reference, sharp_output, std::pow(10.0, result.gain_db / 20.0), result.speed_ratio,

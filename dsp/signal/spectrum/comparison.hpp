@@ -85,9 +85,10 @@ struct Comparison {
 
 /// Compares two takes of any rates and lengths of at least 0.5 s, in constant memory; each is read up to four times.
 /// Whether they are simultaneous is determined from their loudest minute. Other takes are compared by their spectra
-/// only; if both are of one saw at rates within 3 % of each other, they are compared at equal orders. A rate that may be
-/// hum is the saw's if the other take has a certain rate that near: hum is the same in both. Throws Error when
-/// a take is too short or silent, or cannot be trusted up to `narrowest_band`. Allocates.
+/// only; if both are of one saw at rates within 3 % of each other, they are compared at equal orders. A rate that may
+/// be hum is the saw's if the other take has the same orders at a certain rate that near and not at the mains: hum does
+/// not follow the speed of a saw. Throws Error if a take is too short or silent, or is not valid up to
+/// `narrowest_band`. Allocates.
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options = {});
 
 }  // namespace tactus::signal

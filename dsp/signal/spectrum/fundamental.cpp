@@ -13,12 +13,12 @@ constexpr double silent_score = 0.07;  // of a section in which nothing is heard
 constexpr double step_cost = 0.7;      // per unit of ln(f) between sections
 constexpr double max_step = 0.2;      // greatest cost
 constexpr double min_support = 0.25;
-// A rate that moves within a section smears its lines and lowers their scores; that sections in half of the record agree
-// on one path is evidence of its own. Paths of 60 noises of 3 to 6 s reach 0.101, those of machete strokes 0.094.
+// A rate that moves within a section smears its lines and lowers their scores; that sections in half of the record
+// agree on one path is evidence of its own. Paths of 60 noises of 3 to 6 s reach 0.101, those of machete strokes 0.094.
 constexpr double heard_as_path = 0.13;
 constexpr std::size_t min_path = 4;  // sections
-// A rate whose sections agree to 1 % is steady, and only the lines of the whole record are evidence for it: hum beside a
-// machine is such a rate.
+// A rate whose sections agree to 1 % is steady, and only the lines of the whole record are evidence for it: hum beside
+// a machine is such a rate.
 constexpr double moving = 1.01, wide = 1.1;  // highest by lowest rate of a path
 constexpr double jump_in = 0.5;  // of the movement in an eighth of a section: an impact
 
@@ -194,7 +194,8 @@ FundamentalEstimate FundamentalStream::along(const Path& path) const {
     out.high = out.steady ? out.frequency : high;
     const bool is_path = !out.steady && heard.size() >= min_path && share >= 0.5 && out.high > moving * out.low;
     if (out.confidence < (is_path ? heard_as_path : FundamentalEstimate::heard)) out = {};
-    // A steady rate is certain by the lines of the whole record only. Of a moving one, the sections must resolve the half.
+    // A steady rate is certain by the lines of the whole record only. Of a moving one, the sections must resolve the
+    // half.
     out.certain = is_path && out.confidence >= FundamentalEstimate::path && out.low > 2.0 * section_least(rate_);
     for (const HarmonicSum& one : whole)
         if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05)
@@ -264,6 +265,9 @@ FundamentalEstimate FundamentalStream::estimate() const {
         const bool same = alike(still.frequency, out.frequency, 0.05) ||
                           (is_wide && still.frequency >= out.low && still.frequency <= out.high);
         if (still.frequency > 0.0 && !same) out.certain = false;
+        // A ring after strikes at uneven intervals moves as little, and decays between the strikes.
+        const bool rings = (still.frequency > 0.0 && !still.is_persistent) || (agrees && !lines.is_persistent);
+        if (!is_wide && rings) out.certain = false;
         if (is_wide && !out.steady && out.confidence >= FundamentalEstimate::wide_path && same &&
             still.explained >= 0.4 && out.low > 2.0 * section_least(rate_))
             out.certain = true;

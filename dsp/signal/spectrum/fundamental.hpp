@@ -29,8 +29,8 @@ struct FundamentalEstimate {
     bool may_be_hum = false;
     bool steady = false;  ///< constant rate; otherwise `frequency` is the median of its path
     double low = 0.0, high = 0.0;  ///< Hz: the middle 80 % of the path
-    /// Hz: standard deviation of a steady rate (Cramér–Rao bound in the measured noise), or the width of a bin if its
-    /// lines are wider than the record resolves; 0: unknown.
+    /// Hz: standard deviation of a steady rate (Cramér–Rao bound in the measured noise); 0: unknown, as for lines that
+    /// are wider than the record resolves.
     double deviation = 0.0;
     double periods = 0.0;  ///< number of periods in the record
     std::vector<HarmonicSum> rivals;  ///< other rates that explain the lines nearly as well

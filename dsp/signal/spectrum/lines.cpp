@@ -2,6 +2,7 @@
 #include "dsp/signal/spectrum/lines.hpp"
 
 #include "dsp/signal/spectrum/decibels.hpp"
+#include "dsp/signal/spectrum/mains.hpp"
 
 #include <algorithm>
 #include <array>
@@ -112,34 +113,38 @@ std::vector<HumLine> find_hum(const Spectrum& spectrum, double fundamental) {
     std::vector<HumLine> found;
     if (spectrum.power.size() < 16) return found;
     const double threshold = detection_threshold_db(spectrum);
-    const auto is_mains = [](double f) { return std::abs(f - 50.0) < 0.15 || std::abs(f - 60.0) < 0.15; };
-    for (const int mains : {50, 60}) {
-        std::vector<HumLine> family;
-        for (int order = 1; order <= 10; ++order) {
-            const double place = mains * order;
-            if (place > spectrum.frequency(spectrum.power.size() - 6) || place < 5.0 * spectrum.df) continue;
-            if (fundamental > 0.0 && !is_mains(fundamental)) {
-                const double nearest = std::max(1.0, std::round(place / fundamental)) * fundamental;
-                if (std::abs(place - nearest) <= 1.5 * spectrum.noise_bandwidth + 0.003 * place) continue;
-            }
-            HumLine line;
-            static_cast<SpectralLine&>(line) = line_near(spectrum, place, 2.0 * spectrum.df);
-            line.mains = mains;
-            line.order = order;
-            const auto top = static_cast<std::size_t>(std::lround(line.frequency / spectrum.df));
-            // A steady line is as narrow as the window's main lobe; noise or a varying rate is wider.
-            const double skirt = std::max(spectrum.power[top - 3], spectrum.power[top + 3]);
-            const bool narrow = spectrum.power[top] > 4.0 * skirt;
-            const bool in_place = std::abs(line.frequency - place) <= 0.5 * spectrum.df + 0.002 * place;
-            if (line.snr_db >= threshold && narrow && in_place) family.push_back(line);
+    const bool is_mains =
+        std::ranges::any_of(mains_frequencies, [&](int nominal) { return mains_order(fundamental, nominal) == 1; });
+    const auto is_order = [&](double hz) {
+        if (!(fundamental > 0.0) || is_mains) return false;
+        const double nearest = std::max(1.0, std::round(hz / fundamental)) * fundamental;
+        return std::abs(hz - nearest) <= 1.5 * spectrum.noise_bandwidth + 0.003 * hz;
+    };
+    // A narrow line within half a bin and a fraction of `place`.
+    const auto line_at_place = [&](double place, double range) -> std::optional<SpectralLine> {
+        if (place > spectrum.frequency(spectrum.power.size() - 6) || place < 5.0 * spectrum.df) return std::nullopt;
+        const double reach = 0.5 * spectrum.df + range * place;
+        const SpectralLine line = line_near(spectrum, place, std::max(2.0 * spectrum.df, reach));
+        const auto top = static_cast<std::size_t>(std::lround(line.frequency / spectrum.df));
+        // A steady line is as narrow as the window's main lobe; noise or a varying rate is wider.
+        const double skirt = std::max(spectrum.power[top - 3], spectrum.power[top + 3]);
+        const bool is_hum = line.snr_db >= threshold && spectrum.power[top] > 4.0 * skirt &&
+                            std::abs(line.frequency - place) <= reach && !is_order(line.frequency);
+        return is_hum ? std::optional(line) : std::nullopt;
+    };
+    for (const int nominal : mains_frequencies) {
+        SpectralLine strongest;
+        double mains = 0.0;
+        for (int order = 1; order <= max_founding_order; ++order)
+            if (const auto line = line_at_place(order * nominal, mains_range); line && line->power > strongest.power)
+                strongest = *line, mains = strongest.frequency / order;
+        for (int order = 1; order <= 10 && mains > 0.0; ++order) {
+            const auto line = line_at_place(order * mains, 0.002);
+            // 300 and 600 Hz belong to both families: the second one skips them.
+            if (line && std::ranges::none_of(
+                            found, [&](const HumLine& other) { return other.mains * other.order == nominal * order; }))
+                found.push_back({*line, nominal, order});
         }
-        const bool founded = std::any_of(family.begin(), family.end(), [](const HumLine& h) { return h.order <= 3; });
-        // 300 and 600 Hz belong to both families: the second one skips them.
-        for (const HumLine& line : family)
-            if (founded && std::none_of(found.begin(), found.end(), [&](const HumLine& other) {
-                    return std::abs(other.mains * other.order - line.mains * line.order) == 0;
-                }))
-                found.push_back(line);
     }
     return found;
 }

@@ -2,6 +2,7 @@
 #include "dsp/signal/spectrum/steady_fundamental.hpp"
 
 #include "dsp/signal/spectrum/harmonic_fit.hpp"
+#include "dsp/signal/spectrum/mains.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,35 +16,51 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double needed_rate = 22000.0;           // Hz: orders are sought up to 0.36 of it
-constexpr std::size_t longest_segment = 1 << 18;  // thinned samples
+constexpr double needed_rate = 22000.0;  // Hz, at least, after decimation: orders are sought up to 0.36 of it
+constexpr std::size_t longest_segment = 1 << 18;  // decimated samples
 constexpr std::size_t max_kept = 1 << 19;
 constexpr std::size_t max_levels = 6;
 constexpr double shortest_segment = 0.04;  // s
 constexpr std::size_t max_tested = 40;    // lines
-constexpr std::size_t seed_lines = 12;          // lines that candidates are made of
+constexpr std::size_t seed_lines = 12;  // lines of which candidate rates are fractions
 constexpr int max_divisions = 24;
-constexpr double bins_between = 5.0;  // of neighbouring orders: a line of a Hann window is four wide
+constexpr double bins_between = 5.0;  // neighbouring orders, at least: a line of a Hann window is four bins wide
 
 constexpr std::size_t floor_block = 32;  // bins
 constexpr double explains_all = 0.9;  // fraction of the power
-// Hum has odd orders of 50 or 60 Hz, with much weaker even ones, or a few orders of twice that. A comb of this many
-// first orders, none of which has less than this fraction of the power of the strongest, is a machine's.
-constexpr int machine_orders = 5;
-constexpr double min_machine_power = 1e-3;
-// The frequency of the mains varies by 0.1 % (continental Europe: within 50 mHz of 50 Hz for 99 % of the time).
-constexpr double mains_range = 1e-3;
-constexpr double periods_per_piece = 8.0;  // of which persistence is measured: orders must stay separate
+// Of one record: lines of hum are multiples of one frequency, which wanders by less than this fraction meanwhile.
+constexpr double mains_drift = 4e-4;
+// Power relative to the strongest line of a comb from which another line counts: the rest may be chance.
+constexpr double min_relative_power = 0.01;
+// Persistence of a line is measured in eighths of the record, over which the strokes of a saw average out. So does a
+// ring between strikes, which has the lines of a tone: combs of few strong lines must also be steady over pieces of few
+// periods, in which orders stay separate. Rings at 10 strikes per second with a quality of 10 have less than 0.95.
+constexpr std::size_t eighths = 8, few_lines = 2;
+constexpr double periods_per_piece = 8.0;
+constexpr double min_persistence = 0.5, min_persistence_of_few = 0.95;
+constexpr int max_fraction = 12;
 
 struct NarrowLine {
     double frequency, deviation;  // Hz
     double power, floor;          // per bin
-    double weight;                // log-likelihood ratio to noise
+    double weight;  // log-likelihood ratio, line to noise
     bool is_hum;
 };
 
+/// A frequency of the mains, known to `deviation` Hz.
+struct Mains {
+    double frequency, deviation;
+};
+
+std::vector<Mains> nominal_mains() {
+    std::vector<Mains> mains;
+    for (const int nominal : mains_frequencies) mains.push_back({static_cast<double>(nominal), 0.0});
+    return mains;
+}
+
 struct NarrowLines {
     std::vector<NarrowLine> found;  // heaviest first
+    std::vector<Mains> mains = nominal_mains();  // and those of which lines are first orders
     double df = 0.0, all = 0.0;  // `all`: power above the noise, narrow or not
     double hum = 0.0;            // power of lines at orders of the mains
     double threshold = 0.0;      // power over the noise
@@ -51,13 +68,29 @@ struct NarrowLines {
     std::vector<double> floors;  // noise per block of bins
 };
 
-bool is_mains(double frequency, double reach) {
-    for (const double mains : {50.0, 60.0}) {
-        const double order = std::round(frequency / mains);
-        if (order >= 1.0 && order <= 12.0 && std::abs(frequency - order * mains) < reach + 4e-4 * frequency)
-            return true;
-    }
-    return false;
+bool is_order_of(std::span<const Mains> mains, double frequency, double reach) {
+    return std::ranges::any_of(mains, [&](const Mains& one) {
+        const double order = std::round(frequency / one.frequency);
+        return order >= 1.0 && order <= max_mains_order &&
+               std::abs(frequency - order * one.frequency) < reach + order * one.deviation + mains_drift * frequency;
+    });
+}
+
+/// Adds the frequencies of the mains of which a line is a first order, if the line locates them.
+void add_founded(const NarrowLine& line, std::vector<Mains>& mains) {
+    if (3.0 * line.deviation > mains_range * line.frequency) return;
+    for (const int nominal : mains_frequencies)
+        if (const int order = mains_order(line.frequency, nominal); order >= 1 && order <= max_founding_order)
+            mains.push_back({line.frequency / order, 3.0 * line.deviation / order});
+}
+
+/// Whether a comb of this rate begins where a family of hum does: with the mains, twice it (transformers, rectifiers of
+/// one phase) or six times it (of three phases).
+bool begins_as_hum(double rate, double reach) {
+    return std::ranges::any_of(mains_frequencies, [&](int nominal) {
+        const int order = mains_order(rate, nominal, reach);
+        return order == 1 || order == 2 || order == 6;
+    });
 }
 
 /// Quantile of the mean of K exponential powers (Wilson and Hilferty 1931) at `z` standard deviations.
@@ -82,7 +115,7 @@ NarrowLines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
     out.threshold = power_quantile(out.segments, 4.9);
     const double low = power_quantile(out.segments, -0.52);
     const auto last = static_cast<std::size_t>(std::min(top / spectrum.df, static_cast<double>(p.size()) - 4.0));
-    // Noise: the quantile of 30 % in blocks of 32 bins and their neighbours.
+    // Noise level: the 30 % quantile of each block of 32 bins and its two neighbours.
     constexpr std::size_t block = floor_block;
     std::vector<double>& floors = out.floors;
     floors.resize(last / block + 1);
@@ -123,15 +156,18 @@ NarrowLines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
         line.power = p[k] - floor;
         line.floor = floor;
         line.weight = out.segments * (snr - 1.0 - std::log(snr));
-        line.is_hum = is_mains(line.frequency, 3.0 * line.deviation);
-        if (line.is_hum) out.hum += line.power;
         out.found.push_back(line);
+    }
+    for (const NarrowLine& line : out.found) add_founded(line, out.mains);
+    for (NarrowLine& line : out.found) {
+        line.is_hum = is_order_of(out.mains, line.frequency, 3.0 * line.deviation);
+        if (line.is_hum) out.hum += line.power;
     }
     std::ranges::sort(out.found, [](const NarrowLine& a, const NarrowLine& b) { return a.weight > b.weight; });
     return out;
 }
 
-/// Fraction of the power of the lines that a comb explains. Hum counts only where it may be the machine's.
+/// Fraction of the power of the lines that a comb explains; without the power of hum unless `with_hum`.
 double explained_by(double power, const NarrowLines& lines, bool with_hum) {
     // A line of a Hann window has 1.5 times the power of its highest bin.
     return power / std::max(lines.all / 1.5 - (with_hum ? 0.0 : lines.hum), power);
@@ -145,7 +181,8 @@ struct GrownComb {
     double power = 0.0;
 };
 
-/// Grows a comb order by order: each line that fits narrows the rate, and with it the reach of the next.
+/// Grows a comb in order of frequency: each line that fits reduces the uncertainty of the rate, and with it the reach
+/// for the next line.
 GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation, bool with_hum) {
     const std::size_t tested = std::min(lines.found.size(), max_tested);
     std::array<std::size_t, max_tested> by_frequency{};
@@ -176,12 +213,28 @@ GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation
         information += more;
         out.frequency = weighted / information;
     }
-    // An order that is missing up to the highest is less probable than one that is there.
+    // Most machines have most of their orders: each missing one below the highest costs 0.3.
     out.score = score - 0.3 * static_cast<double>(out.highest - static_cast<int>(out.lines));
     return out;
 }
 
-/// Log-likelihood ratio of the strongest bin where a rate of which `frequency` is a multiple would have further orders.
+/// Whether a line outside of a comb is an order of a fraction of its rate, and too strong for a coincidence.
+/// `strongest`: line of the comb, of that order.
+bool is_order_of_fraction(const NarrowLine& line, const NarrowLine& strongest, int order, double df) {
+    if (line.is_hum || line.power < min_relative_power * strongest.power) return false;
+    const double rate = strongest.frequency / order, deviation = strongest.deviation / order;
+    for (int divisor = 2; divisor <= max_fraction; ++divisor) {
+        const double multiple = std::round(line.frequency * divisor / rate);
+        const double place = multiple * rate / divisor;
+        if (multiple >= 1.0 && std::abs(line.frequency - place) <
+                                   0.1 * df + 3.0 * std::hypot(line.deviation, multiple * deviation / divisor))
+            return true;
+    }
+    return false;
+}
+
+/// Log-likelihood ratio of the strongest bin at an order of a half to a fifth of `frequency` that is no order of
+/// `frequency`: evidence that the rate is that fraction.
 double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double frequency, int highest, double top) {
     const double unlikely = power_quantile(lines.segments, 3.7);
     double strongest = 0.0;
@@ -189,11 +242,12 @@ double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double
         for (int order = 1; order < divisor * std::max(highest, 4); ++order) {
             const double place = frequency * order / divisor;
             if (order % divisor == 0 || place < 3.0 * lines.df || place > top) continue;
-            if (is_mains(place, 1.5 * lines.df) || frequency / divisor < bins_between * lines.df) continue;
+            if (is_order_of(lines.mains, place, 1.5 * lines.df) || frequency / divisor < bins_between * lines.df)
+                continue;
             const auto k = static_cast<std::size_t>(std::lround(place / lines.df));
             if (k + 2 >= spectrum.power.size()) break;
             const double power = std::max({spectrum.power[k - 1], spectrum.power[k], spectrum.power[k + 1]});
-            // The skirts of the orders beside it are no line.
+            // Side lobes of nearby lines are not evidence.
             double skirt = 0.0;
             for (const NarrowLine& line : lines.found)
                 if (const double away = std::abs(line.frequency - place) / lines.df; away > 1.7)
@@ -204,18 +258,24 @@ double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double
     return strongest;
 }
 
-/// How evenly a line is spread over the record: squared mean of its amplitude in short pieces over the mean square.
-/// Pieces of a few periods: longer ones average a ring over the pause until the next strike.
-double persistence_of(std::span<const double> samples, double rate, double line, double fundamental) {
-    const auto longest = samples.size() / 8;
-    const std::size_t piece =
-        std::min(longest, static_cast<std::size_t>(std::ceil(periods_per_piece * rate / fundamental)));
+/// Expected squared mean of the amplitudes of a steady line in noise over their mean square, where `snr` is the power
+/// of the line over that of the noise: π/4 of noise alone, 1 − 1/(2 snr) of a strong line, and a curve between the two
+/// that is within 0.03 of Rice's distribution.
+double steady_persistence(double snr) {
+    constexpr double of_line = 1.0 - 0.25 * std::numbers::pi;
+    return 1.0 - of_line / (1.0 + 2.0 * of_line * snr);
+}
+
+/// How evenly a line is spread over the record: squared mean of its amplitude in pieces over the mean square, relative
+/// to that of a steady line in the same noise.
+double persistence_of(std::span<const double> samples, double rate, const NarrowLine& line, double df,
+                      std::size_t piece) {
     if (piece == 0) return 0.0;
     std::vector<std::complex<double>> kernel(piece);
     for (std::size_t n = 0; n < piece; ++n) {
         const double w =
             1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(piece));
-        kernel[n] = std::polar(w, 2.0 * std::numbers::pi * line / rate * static_cast<double>(n));
+        kernel[n] = std::polar(w, 2.0 * std::numbers::pi * line.frequency / rate * static_cast<double>(n));
     }
     double sum = 0.0, roots = 0.0, count = 0.0;
     for (std::size_t from = 0; from + piece <= samples.size(); from += piece, count += 1.0) {
@@ -225,7 +285,9 @@ double persistence_of(std::span<const double> samples, double rate, double line,
         for (std::size_t n = 0; n < piece; ++n) amplitude += kernel[n] * (part[n] - mean);
         sum += std::norm(amplitude), roots += std::abs(amplitude);
     }
-    return sum > 0.0 ? roots * roots / (count * sum) : 0.0;
+    // A bin of the spectrum and a piece differ in the noise that they contain.
+    const double snr = line.power / line.floor * df * static_cast<double>(piece) / rate;
+    return sum > 0.0 ? roots * roots / (count * sum) / steady_persistence(snr) : 0.0;
 }
 
 struct CombChoice {
@@ -246,7 +308,7 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
             if (f < lowest || f > highest || f < bins_between * lines.df) continue;
             combs.push_back(grow_comb(lines, f, lines.found[i].deviation / k, with_hum));
         }
-    // Coincidences among weak lines do not make up for a strong line that a comb leaves out.
+    // Weak lines that fit by chance must not outweigh a strong line outside of the comb.
     double all = 0.0;
     for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i)
         if (with_hum || !lines.found[i].is_hum) all += lines.found[i].power;
@@ -258,26 +320,12 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
     return out;
 }
 
-/// Whether a comb has the orders of a machine, and nearly all of the power of the lines: hum beside another machine
-/// has not.
-bool has_machine_orders(const NarrowLines& lines, const GrownComb& comb) {
-    std::array<double, machine_orders> powers{};
-    double all = 0.0;
-    for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i) {
-        all += lines.found[i].power;
-        if (const int order = comb.order[i]; order >= 1 && order <= machine_orders)
-            powers[static_cast<std::size_t>(order - 1)] += lines.found[i].power;
-    }
-    const auto [least, greatest] = std::ranges::minmax(powers);
-    return least > 0.0 && least >= min_machine_power * greatest && comb.power >= explains_all * all;
-}
-
-/// Probability that the rate is right: logistic regression on the 1,000 machines of seed_lines 0 to 999 of `tactus-bench fundamental`, which judges it on others.
-/// Where the regression would extrapolate it is 0: hum among the orders, fewer than half of the lines, fewer than 6
-/// periods.
+/// Probability that the rate is right: logistic regression on the machines of seeds 0 to 999 of `tactus-bench
+/// fundamental`, which tests it on others. 0 outside of the range of the regression: hum among the orders, orders of a
+/// fraction of the rate, less than half of the power explained, fewer than 6 periods, a line that is not steady.
 double probability_of(const SteadyFundamental& one) {
-    if (!(one.explained >= 0.5) || one.periods < 6.0 || one.may_combine_hum) return 0.0;
-    if (one.persistence < 0.5) return 0.0;
+    if (!(one.explained >= 0.5) || one.periods < 6.0 || one.may_combine_hum || one.may_be_multiple) return 0.0;
+    if (!one.is_persistent) return 0.0;
     const double gap = std::clamp(one.score - one.rival_score, 0.0, 12.0);
     const double missing = std::min(6.0, static_cast<double>(one.highest_order) - static_cast<double>(one.lines));
     const double sum = -0.937 + 0.645 * gap - 0.871 * std::sqrt(gap) + 0.482 * std::min(std::log(one.periods), 5.0) +
@@ -358,7 +406,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     const double top = factor_ > 1 ? 0.38 * rate_ : 0.48 * rate_;
     std::vector<NarrowLines> all(levels_.size());
     CombChoice chosen;
-    // Shorter segments blur lines that longer ones resolve; they are for rates that wander.
+    // Shorter segments are used only for rates that wander: they blur lines that longer ones resolve.
     all[0] = lines_of(levels_[0].spectrum(), top, true);
     double narrow = 0.0;
     for (const NarrowLine& line : all[0].found) narrow += line.power;
@@ -375,7 +423,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
             one.with_hum = with_hum;
             if (one.score > chosen.score) chosen = one;
         }
-        // Orders of the mains that hold most of the power are no hum beside a machine.
+        // If the lines of a machine explain little of the power, the orders of the mains may be the machine's.
         if (chosen.score > 0.0 && chosen.explained >= 0.5) break;
     }
     if (!(chosen.score > 0.0)) return out;
@@ -394,17 +442,16 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     const NarrowLine* strongest = nullptr;
     int strongest_order = 1;
     std::vector<int> orders;
-    int common = 0;  // divisor of the orders that are no hum
+    int common = 0;  // greatest common divisor of the orders that are no hum
     std::vector<double> others;
-    // Hum begins with the first or the second order of the mains: a machine at the third or a higher one is distinguished
-    // by the absence of other orders of the mains.
-    const bool is_first = std::min(std::abs(comb.frequency - 55.0), std::abs(comb.frequency - 110.0)) < 12.0;
-    bool has_hum = is_first;
-    bool is_over_hum = false;  // a multiple of what was taken for hum
+    bool has_hum = false;  // beside the comb
+    std::vector<Mains> beside = nominal_mains();
+    bool is_over_hum = false;  // the rate is a multiple of a line that counts as hum
     for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i) {
         const NarrowLine& line = lines.found[i];
         if (comb.order[i] == 0) {
             has_hum |= line.is_hum;
+            add_founded(line, beside);
             for (int divisor = 2; divisor <= 12 && line.is_hum; ++divisor)
                 is_over_hum |= std::abs(divisor * line.frequency - comb.frequency) < 3.0 * divisor * line.deviation;
             if (!line.is_hum) out.foreign = std::max(out.foreign, line.weight);
@@ -415,17 +462,27 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         orders.push_back(comb.order[i]);
         if (!line.is_hum) common = std::gcd(common, comb.order[i]);
     }
-    // Also a comb that only lines of the mains hold together: without them a multiple explains the machine's.
-    const bool is_machine = has_machine_orders(lines, comb);
-    out.may_combine_hum = (common > 1 && !is_machine) || is_over_hum;
-    const double reach = mains_range * comb.frequency + 3.0 * strongest->deviation / strongest_order;
-    out.is_at_mains = has_hum && is_mains(comb.frequency, reach) && !is_machine;
+    for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i) {
+        const NarrowLine& line = lines.found[i];
+        out.strong_lines += comb.order[i] > 0 && line.power >= min_relative_power * strongest->power;
+        out.may_be_multiple |= comb.order[i] == 0 && is_order_of_fraction(line, *strongest, strongest_order, lines.df);
+    }
+    // A machine at another order of the mains is distinguished from hum by the absence of the first orders, or by their
+    // frequency.
+    const double reach = 3.0 * strongest->deviation / strongest_order;
+    out.is_at_mains = begins_as_hum(comb.frequency, reach) || (has_hum && is_order_of(beside, comb.frequency, reach));
+    // If the orders that are no hum have a common divisor, only lines of hum support this rate, and the machine's may
+    // be the multiple. This does not apply to a comb at the mains, of which every order may be hum.
+    out.may_combine_hum = (common > 1 && !out.is_at_mains) || is_over_hum;
     out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
-    out.persistence = persistence_of(kept_, rate_, strongest->frequency, comb.frequency);
+    const std::size_t eighth = kept_.size() / eighths;
+    const auto few_periods = static_cast<std::size_t>(std::ceil(periods_per_piece * rate_ / comb.frequency));
+    out.persistence = persistence_of(kept_, rate_, *strongest, lines.df,
+                                     out.strong_lines > few_lines ? eighth : std::min(eighth, few_periods));
+    out.is_persistent = out.persistence >= (out.strong_lines > few_lines ? min_persistence : min_persistence_of_few);
     out.confidence_without_hum = probability_of(out);
     out.confidence = out.is_at_mains ? 0.0 : out.confidence_without_hum;
-    out.deviation = lines.df;
     if (out.is_sharp && !kept_.empty()) {
         const HarmonicFit fit = fit_harmonics(kept_, rate_, comb.frequency, orders, others);
         if (std::abs(fit.frequency - comb.frequency) * comb.highest < lines.df) {

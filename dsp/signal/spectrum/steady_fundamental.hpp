@@ -14,11 +14,12 @@ namespace tactus::signal {
 
 struct SteadyFundamental {
     double frequency = 0.0;  ///< Hz; 0: no line
-    /// Hz, standard deviation: the Cramér–Rao bound of the orders in the measured noise, or a bin of lines that are not
-    /// sharp.
+    /// Hz, standard deviation: the Cramér–Rao bound of the orders in the measured noise. 0: unknown, because the lines
+    /// are not sharp or their orders do not fit the samples.
     double deviation = 0.0;
     double periods = 0.0;  ///< in the record, or in the segment beyond which the lines are smeared
     std::size_t lines = 0;  ///< number of orders found
+    std::size_t strong_lines = 0;  ///< of these, within 20 dB of the strongest
     int highest_order = 0;
     double score = 0.0;  ///< log-likelihood that the lines are orders, relative to chance
     double rival = 0.0;  ///< Hz: the best other rate; 0: none
@@ -27,18 +28,24 @@ struct SteadyFundamental {
     double between = 0.0;  ///< log-likelihood ratio of the strongest bin at an order of a half, third, … of the rate
     double foreign = 0.0;  ///< log-likelihood ratio to noise of the strongest other line that is not hum
     double margin_db = 0.0;  ///< level of the strongest order above the weakest detectable line
-    /// 1: the strongest order is equally strong throughout the record; p: it is in a fraction p only. Lower for a ring
-    /// that decays before the next strike, which is a line of finite width and no tone.
+    /// 1: the strongest order is equally strong throughout the record; p: it is in a fraction p only. Measured in
+    /// eighths of the record, or in pieces of 8 periods if there are at most 2 strong lines: lower for a ring that
+    /// decays before the next strike, which is a line of finite width and no tone.
     double persistence = 0.0;
+    bool is_persistent = false;  ///< the persistence is that of a tone
     double lowest = 0.0;  ///< Hz: lower rates are not resolved
-    /// The rate is an order of the mains, and its lines are too few to exclude hum.
+    /// The rate is within `mains_range` of the mains, of twice or six times it, or of another order beside which there
+    /// are orders of the mains. One record does not distinguish its orders from hum, however many they are: rectifiers
+    /// make as many as a machine.
     bool is_at_mains = false;
     /// The rate may only combine hum with the orders of a machine, or may be a multiple of a fundamental whose line was
     /// taken for hum.
     bool may_combine_hum = false;
+    /// Strong lines are orders of a fraction of the rate: it may be a multiple of one below the range that is searched.
+    bool may_be_multiple = false;
     bool is_sharp = false;  ///< the lines are as narrow as the longest segment resolves
-    /// Probability that the rate is correct, not a multiple or fraction of the true rate; see `FundamentalEstimate`. 0 at
-    /// an order of the mains.
+    /// Probability that the rate is correct, not a multiple or fraction of the true rate; see `FundamentalEstimate`. 0
+    /// at an order of the mains.
     double confidence = 0.0;
     double confidence_without_hum = 0.0;  ///< the same if the lines at orders of the mains are a machine's
 };
@@ -46,7 +53,8 @@ struct SteadyFundamental {
 /// Estimates the fundamental of a steady record that comes in pieces, in constant memory (about 20 MB at most).
 class SteadyFundamentalStream {
 public:
-    /// `frames`: length of the record; an estimate is enough. Rates are sought from `lowest` to `highest` Hz. Allocates.
+    /// `frames`: length of the record; an estimate is enough. Rates are sought from `lowest` to `highest` Hz.
+    /// Allocates.
     SteadyFundamentalStream(double rate, std::size_t frames, double lowest, double highest);
 
     void push(std::span<const double> samples);

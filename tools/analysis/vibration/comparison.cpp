@@ -169,8 +169,7 @@ ComparedPair compare_files(const CompareSettings& settings) {
         if (hz > 0.0)
             o.notes.push_back(
                 fmt::format("{:.2f} Hz in the {} is an order of the mains, mains hum or a machine: its orders are not "
-                            "judged; a take of the saw at a rate up to 3 % away from it, as reference or output, "
-                            "decides",
+                            "judged; a take of the saw 0.5 to 3 % faster or slower, as reference or output, decides",
                             hz, name));
     o.level_gap_db = level_gap(settings, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, settings.thresholds);

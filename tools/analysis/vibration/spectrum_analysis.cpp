@@ -96,8 +96,8 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
         const std::string periods = fmt::format("the record has {:.0f} periods", found.periods);
         if (found.may_be_hum)
             warnings.push_back(
-                fmt::format("cannot tell whether {:.1f} Hz, an order of the mains, is mains hum or a machine of fewer "
-                            "than 5 strong orders; a record with the machine off shows the hum",
+                fmt::format("{:.1f} Hz is an order of the mains, mains hum or a machine; a record with the machine off "
+                            "shows the hum",
                             found.frequency));
         else if (found.rivals.empty())
             warnings.push_back(fmt::format("cannot tell whether {:.1f} Hz is the fundamental or a multiple of it: {}",

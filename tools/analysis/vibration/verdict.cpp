@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/vibration/verdict.hpp"
 
+#include "dsp/signal/spectrum/mains.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,12 +15,13 @@ namespace {
 constexpr double coherent = 0.5;
 constexpr double max_course_db = 3.0;  // rms of the level difference over time of what are copies
 
-constexpr double max_mains_order = 12.0;
+constexpr double line_deviation = 0.05;  // Hz, of the frequency of a line
 
-/// Order of the mains of a line; 0: it is none. The mains varies by 0.1 %, and the place of a line by 0.05 Hz.
-double mains_order(double hz, int mains) {
-    const double order = std::round(hz / mains);
-    return order <= max_mains_order && std::abs(hz - order * mains) < 0.05 + 1e-3 * hz ? order : 0.0;
+/// Order of a fundamental; 0: none.
+int order_of(double hz, double fundamental_hz) {
+    const double order = std::round(hz / fundamental_hz);
+    return order >= 1.0 && std::abs(hz - order * fundamental_hz) < std::max(0.003 * hz, 1.0) ? static_cast<int>(order)
+                                                                                             : 0;
 }
 
 std::vector<signal::SpectralLine> stronger_than(const std::vector<signal::SpectralLine>& lines, double min_db) {
@@ -112,43 +115,50 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
     return verdict;
 }
 
+std::string uncertain_order(int order, double hz) {
+    return fmt::format("order {} of {:.4g} Hz, or mains hum", order, hz);
+}
+
 int mains_of(std::span<const signal::SpectralLine> lines) {
     int found = 0;
     std::ptrdiff_t most = 0;
-    for (const int mains : {50, 60}) {
-        const auto count = [&](double last) {
+    for (const int mains : signal::mains_frequencies) {
+        const auto count = [&](int last) {
             return std::ranges::count_if(lines, [&](const signal::SpectralLine& line) {
-                const double order = mains_order(line.frequency, mains);
-                return order >= 1.0 && order <= last;
+                const int order = signal::mains_order(line.frequency, mains, line_deviation);
+                return order >= 1 && order <= last;
             });
         };
-        if (const std::ptrdiff_t all = count(max_mains_order); count(3.0) > 0 && all > most) found = mains, most = all;
+        if (const std::ptrdiff_t all = count(signal::max_mains_order);
+            count(signal::max_founding_order) > 0 && all > most)
+            found = mains, most = all;
     }
     return found;
 }
 
-std::string name_of_line(double hz, double fundamental_hz, int mains_hz) {
-    if (fundamental_hz > 0.0) {
-        const double order = std::round(hz / fundamental_hz);
-        if (order >= 1.0 && std::abs(hz - order * fundamental_hz) < std::max(0.003 * hz, 1.0))
-            return fmt::format("order {:.0f}", order);
-    }
+std::string RecordRates::name_of(double hz) const {
+    if (fundamental_hz > 0.0)
+        if (const int order = order_of(hz, fundamental_hz); order > 0) return fmt::format("order {}", order);
+    if (hum_hz > 0.0)
+        if (const int order = order_of(hz, hum_hz); order > 0) return uncertain_order(order, hum_hz);
     if (mains_hz <= 0) return "";
-    const double order = mains_order(hz, mains_hz);
-    if (!(order >= 1.0)) return "";
-    return order == 1.0 ? fmt::format("mains hum, {} Hz", mains_hz)
-                        : fmt::format("mains hum, {:g} × {} Hz", order, mains_hz);
+    const int order = signal::mains_order(hz, mains_hz, line_deviation);
+    if (order == 0) return "";
+    if (!(fundamental_hz > 0.0)) return uncertain_order(order, mains_hz);
+    return order == 1 ? fmt::format("mains hum, {} Hz", mains_hz)
+                      : fmt::format("mains hum, {} × {} Hz", order, mains_hz);
 }
 
 LineNames::LineNames(const signal::Comparison& c)
-    : reference_hz_(c.reference_hz), output_hz_(c.output_hz > 0.0 ? c.output_hz : c.reference_hz) {
+    : reference_{c.reference_hz, c.reference_hum_hz, 0},
+      output_{c.output_hz > 0.0 || c.output_hum_hz > 0.0 ? c.output_hz : c.reference_hz, c.output_hum_hz, 0} {
     const auto mains = [&](const std::vector<signal::SpectralLine>& own) {
         std::vector<signal::SpectralLine> all = c.lines.in_both;
         all.insert(all.end(), own.begin(), own.end());
         return mains_of(all);
     };
-    reference_mains_ = mains(c.lines.only_in_reference);
-    output_mains_ = mains(c.lines.only_in_output);
+    reference_.mains_hz = mains(c.lines.only_in_reference);
+    output_.mains_hz = mains(c.lines.only_in_output);
 }
 
 }  // namespace tactus::analysis

@@ -41,20 +41,30 @@ Verdict judge(const signal::Comparison& comparison, double level_gap_db, const t
 /// is one of its first three orders.
 int mains_of(std::span<const signal::SpectralLine> lines);
 
-/// "order 2" of the fundamental, "mains hum, 3 × 50 Hz" of mains of `mains_hz`, or "". 0: unknown.
-std::string name_of_line(double hz, double fundamental_hz, int mains_hz);
+/// "order 2 of 50 Hz, or mains hum": a rate at the mains, of a machine or of hum.
+std::string uncertain_order(int order, double hz);
+
+/// Rates after which the lines of a record are named, Hz; 0: none.
+struct RecordRates {
+    double fundamental_hz = 0.0;
+    double hum_hz = 0.0;  ///< a rate that may be a machine's or hum
+    int mains_hz = 0;     ///< 50 or 60
+
+    /// "order 2" of the fundamental, "order 2 of 50 Hz, or mains hum" of a rate that may be hum, "mains hum, 3 × 50 Hz"
+    /// beside a machine of another rate, or "". Without a fundamental nothing shows that an order of the mains is hum.
+    std::string name_of(double hz) const;
+};
 
 /// Names the lines of a comparison that the reference has, and those that only the output has.
 class LineNames {
 public:
     explicit LineNames(const signal::Comparison& comparison);
 
-    std::string of_reference(double hz) const { return name_of_line(hz, reference_hz_, reference_mains_); }
-    std::string of_output(double hz) const { return name_of_line(hz, output_hz_, output_mains_); }
+    std::string of_reference(double hz) const { return reference_.name_of(hz); }
+    std::string of_output(double hz) const { return output_.name_of(hz); }
 
 private:
-    double reference_hz_, output_hz_;
-    int reference_mains_, output_mains_;
+    RecordRates reference_, output_;
 };
 
 }  // namespace tactus::analysis

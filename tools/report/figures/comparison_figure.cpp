@@ -100,9 +100,11 @@ private:
     std::vector<Box> taken_;
 };
 
-/// "×2" for the second order, "hum" for the mains.
+/// "×2" for the second order, "hum" for the mains, "hum?" for what may be either.
 std::string short_name(const std::string& name) {
-    return name.starts_with("order ") ? "×" + name.substr(6) : name.empty() ? "" : "hum";
+    if (name.empty()) return "";
+    if (!name.starts_with("order ")) return "hum";
+    return name.ends_with("or mains hum") ? "hum?" : "×" + name.substr(6);
 }
 
 std::string with_name(const std::string& text, const std::string& name) {

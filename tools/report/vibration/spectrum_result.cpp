@@ -4,6 +4,7 @@
 #include "dsp/core/readable.hpp"
 #include "dsp/signal/spectrum/decibels.hpp"
 #include "tools/analysis/vibration/level_reference.hpp"
+#include "tools/analysis/vibration/verdict.hpp"
 #include "tools/counted.hpp"
 #include "tools/report/result/printers.hpp"
 
@@ -103,15 +104,23 @@ std::vector<Line> lines_of(const Channel& c, const std::vector<SpectralLine>& li
 std::vector<Line> named_lines(const Channel& c) {
     const signal::VibrationReport& r = c.report();
     std::vector<Line> all;
+    const auto is_named = [&, &lines = all](const SpectralLine& l) {
+        return std::ranges::any_of(
+            lines, [&](const Line& other) { return std::abs(other.level.hz - l.frequency) < r.lines.df; });
+    };
+    const signal::FundamentalEstimate& f = r.fundamental;
     for (const signal::Harmonic& h : r.harmonics)
-        if (h.present) all.push_back(line_of(c, h, fmt::format("order {}", h.order)));
+        if (h.present)
+            all.push_back(line_of(
+                c, h,
+                f.may_be_hum ? analysis::uncertain_order(h.order, f.frequency) : fmt::format("order {}", h.order)));
     for (const signal::HumLine& h : r.hum)
-        all.push_back(line_of(c, h, fmt::format("hum, {} × {} Hz", h.order, h.mains)));
-    const std::size_t named = all.size();
+        if (!is_named(h))
+            all.push_back(line_of(c, h,
+                                  f.is_certain() ? fmt::format("hum, {} × {} Hz", h.order, h.mains)
+                                                 : analysis::uncertain_order(h.order, h.mains)));
     for (const SpectralLine& l : r.peaks)
-        if (std::none_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(named),
-                         [&](const Line& other) { return std::abs(other.level.hz - l.frequency) < r.lines.df; }))
-            all.push_back(line_of(c, l));
+        if (!is_named(l)) all.push_back(line_of(c, l));
     for (const SpectralLine& l : r.envelope) all.push_back(line_of(c, l, "of the envelope"));
     return all;
 }
@@ -232,7 +241,8 @@ std::string orders_text(const Channel& c) {
 std::vector<std::string> hum_lines(const Channel& c) {
     std::vector<std::string> all;
     for (const signal::HumLine& h : c.report().hum)
-        all.push_back(fmt::format("of {} Hz mains at {:.2f} Hz, {:.1f} dB rms, SNR {:.0f} dB", h.mains, h.frequency,
+        all.push_back(fmt::format("of {} Hz mains{} at {:.2f} Hz, {:.1f} dB rms, SNR {:.0f} dB", h.mains,
+                                  c.report().fundamental.is_certain() ? "" : ", or a machine,", h.frequency,
                                   c.db(h.power), h.snr_db));
     return all;
 }

@@ -145,6 +145,22 @@ TEST_CASE("no hum is found in 200 records without hum, saws at any rate", "[slow
     CHECK(false_alarms == 0);
 }
 
+TEST_CASE("hum is found where the mains is 0.4 % off, with its high orders") {
+    for (const double mains : {49.8, 50.2, 59.76, 60.24}) {
+        CAPTURE(mains);
+        Record record(8000.0, 10.0);
+        record.saw(233.0, 0.1).noise(0.02, 1);
+        for (const int order : {1, 3, 10}) record.tone(order * mains, 0.05);
+        std::vector<int> orders;
+        for (const signal::HumLine& line : signal::find_hum(record.spectrum(8192), 233.0)) {
+            CHECK(line.mains == std::lround(mains / 10.0) * 10);
+            CHECK(line.frequency == Approx(line.order * mains).margin(0.1));
+            orders.push_back(line.order);
+        }
+        CHECK(orders == std::vector<int>{1, 3, 10});
+    }
+}
+
 TEST_CASE("a rate that is the mains itself counts as hum, orders of a saw at 150 Hz do not") {
     CHECK_FALSE(
         signal::find_hum(Record(8000.0, 10.0).tone(50.0, 1.0).tone(100.0, 0.3).noise(0.01, 1).spectrum(8192), 50.0)

@@ -80,24 +80,37 @@ TEST_CASE("a line that only one has counts by its level beside the reference's s
     CHECK(judge(c, 0.0, {}).passed());
 }
 
-TEST_CASE("a line is called after the saw's order first, then after the mains") {
-    CHECK(name_of_line(466.1, 233.0, 50) == "order 2");
-    CHECK(name_of_line(50.02, 233.0, 50) == "mains hum, 50 Hz");
-    CHECK(name_of_line(180.0, 0.0, 60) == "mains hum, 3 × 60 Hz");
-    CHECK(name_of_line(100.0, 50.0, 50) == "order 2");
-    CHECK(name_of_line(77.0, 233.0, 50).empty());
-    CHECK(name_of_line(100.0, 0.0, 0).empty());
+TEST_CASE("a line is named after the saw's order first, then after the mains") {
+    const RecordRates saw{233.0, 0.0, 50};
+    CHECK(saw.name_of(466.1) == "order 2");
+    CHECK(saw.name_of(50.02) == "mains hum, 50 Hz");
+    CHECK(saw.name_of(149.6) == "mains hum, 3 × 50 Hz");
+    CHECK(saw.name_of(77.0).empty());
+    CHECK(RecordRates{50.0, 0.0, 50}.name_of(100.0) == "order 2");
+    CHECK(RecordRates{}.name_of(100.0).empty());
 }
 
-TEST_CASE("the lines of one record are hum of one mains, and only as near to it as the mains is steady") {
+TEST_CASE("a line that may be hum or a machine's is named as both") {
+    CHECK(RecordRates{0.0, 99.8, 50}.name_of(199.6) == "order 2 of 99.8 Hz, or mains hum");
+    CHECK(RecordRates{0.0, 0.0, 60}.name_of(180.0) == "order 3 of 60 Hz, or mains hum");
     signal::Comparison c = good();
+    c.reference_hz = 51.0, c.output_hum_hz = 50.0;
+    c.lines.only_in_output = {line(50.0, -20.0), line(150.0, -20.0)};
+    CHECK(LineNames(c).of_output(150.0) == "order 3 of 50 Hz, or mains hum");
+    CHECK(LineNames(c).of_reference(153.0) == "order 3");
+}
+
+TEST_CASE("the lines of one record are hum of one mains, within the range of its frequency") {
+    signal::Comparison c = good();
+    c.reference_hz = c.output_hz = 233.0;
     for (const double hz : {100.0, 200.0, 300.0, 400.0, 500.0, 600.0})
         c.lines.only_in_reference.push_back(line(hz, -20.0));
-    c.lines.only_in_output = {line(99.7, -20.0), line(199.4, -20.0), line(299.1, -20.0), line(900.0, -20.0)};
+    c.lines.only_in_output = {line(99.6, -20.0), line(199.2, -20.0), line(151.2, -20.0), line(900.0, -20.0)};
     const LineNames names(c);
     CHECK(names.of_reference(100.0) == "mains hum, 2 × 50 Hz");
     CHECK(names.of_reference(600.0) == "mains hum, 12 × 50 Hz");
-    for (const double hz : {99.7, 199.4, 299.1, 900.0}) CHECK(names.of_output(hz).empty());
+    CHECK(names.of_output(199.2) == "mains hum, 4 × 50 Hz");
+    for (const double hz : {151.2, 900.0}) CHECK(names.of_output(hz).empty());
     CHECK(mains_of(std::vector{line(60.02, -30.0), line(180.0, -30.0), line(300.0, -30.0)}) == 60);
     CHECK(mains_of(std::vector{line(400.0, -30.0)}) == 0);
 }
