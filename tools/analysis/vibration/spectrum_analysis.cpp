@@ -15,6 +15,8 @@ namespace tactus::analysis {
 
 namespace {
 
+constexpr double min_velocity_coverage = 0.9;
+
 signal::WelchSettings psd_settings(const SpectrumSettings& settings, double rate, std::size_t frames) {
     signal::WelchSettings welch;
     welch.rate = rate;
@@ -63,13 +65,43 @@ sound::Calibration integrated(const sound::Calibration& recorded, const Spectrum
     return out;
 }
 
-/// One per channel; none if the record is no calibrated acceleration or does not reach the upper limit of the band.
-std::vector<signal::BandVelocity> machine_velocities(const AnalysedFile& file, std::size_t channels,
-                                                     std::size_t frames) {
+double usable_of(const AnalysedFile& file) {
+    return file.log ? std::min(0.5 * file.rate, file.log->usable) : 0.5 * file.rate;
+}
+
+/// Whether a velocity is wanted: of a calibrated acceleration.
+bool has_machine_velocity(const AnalysedFile& file) {
+    return !file.only_psd && file.recorded.known && file.recorded.is_acceleration;
+}
+
+/// One per channel; none without a velocity, or if the record does not reach the upper limit of the band.
+std::vector<signal::BandVelocity> machine_velocities(const AnalysedFile& file, std::size_t channels) {
     const auto [low, high] = machine_band;
-    const double usable = file.log ? std::min(0.5 * file.rate, file.log->usable) : 0.5 * file.rate;
-    if (file.only_psd || !file.recorded.known || !file.recorded.is_acceleration || usable < high) return {};
-    return std::vector(channels, signal::BandVelocity(low, high, file.rate, frames));
+    if (!has_machine_velocity(file) || usable_of(file) < high) return {};
+    return std::vector(channels, signal::BandVelocity(low, high, file.rate));
+}
+
+/// Sets the velocity of a channel, with a warning if there is none or if it covers a part of the record only.
+void set_machine_velocity(AnalysedChannel& channel, const AnalysedFile& file, const signal::BandVelocity* velocity) {
+    if (!has_machine_velocity(file)) return;
+    const std::string name = fmt::format("velocity {:g} to {:g} Hz", machine_band.first, machine_band.second);
+    if (!velocity) {
+        channel.warnings.push_back(
+            fmt::format("no {}: the record is valid up to {} only", name, readable(usable_of(file), "Hz", 4)));
+        return;
+    }
+    if (!velocity->is_resolved()) {
+        channel.warnings.push_back(
+            fmt::format("no {}: it needs a stretch of {:g} s without a gap", name, velocity->min_piece()));
+        return;
+    }
+    channel.machine_velocity = file.recorded.si * velocity->rms();
+    channel.machine_velocity_coverage = velocity->coverage();
+    if (velocity->coverage() < min_velocity_coverage)
+        channel.warnings.push_back(fmt::format(
+            "the {} covers {:.0f} % of the record: not its ends, the 0.1 s beside gaps and stretches shorter "
+            "than {:g} s",
+            name, 100.0 * velocity->coverage(), velocity->min_piece()));
 }
 
 std::vector<std::string> warnings_of(const signal::VibrationReport& report, const AnalysedFile& file,
@@ -165,13 +197,13 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
         }
         reader.rewind();
     }
-    std::vector<signal::BandVelocity> velocities = machine_velocities(out, chosen.size(), reader.frames());
+    std::vector<signal::BandVelocity> velocities = machine_velocities(out, chosen.size());
     std::size_t done = 0;
     while (reader.next(block)) {
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             if (block.after_gap) analyses[i].gap();
             if (!velocities.empty()) {
-                if (block.after_gap) velocities[i].gap();
+                if (block.after_gap) velocities[i].end_piece();
                 velocities[i].push(block.channels[chosen[i]]);
             }
             if (integrations.empty()) {
@@ -188,12 +220,11 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
             progress(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, reader.frames())));
     }
     out.duration = static_cast<double>(done) / out.rate;
+    for (signal::BandVelocity& velocity : velocities) velocity.end_piece();
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         AnalysedChannel& channel = out.channels.emplace_back();
         channel.name = reader.channels()[chosen[i]];
         channel.report = analyses[i].report();
-        if (!velocities.empty() && velocities[i].is_resolved())
-            channel.machine_velocity = out.recorded.si * velocities[i].rms();
         channel.marks = levels_at(channel.report.lines, out.marks);
         if (channel.report.envelope_spectrum)
             channel.envelope_marks = levels_at(*channel.report.envelope_spectrum, out.marks);
@@ -203,6 +234,7 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
         // The rows themselves have the level, whatever resampling does near half the rate.
         if (out.log && wanted.integrations == 0) channel.report.level = out.log->levels[chosen[i]];
         channel.warnings = warnings_of(channel.report, out, chosen[i]);
+        set_machine_velocity(channel, out, velocities.empty() ? nullptr : &velocities[i]);
     }
     return out;
 }

@@ -42,8 +42,10 @@ struct AnalysedChannel {
     std::string name;
     signal::VibrationReport report;
     /// Velocity in `machine_band`, m/s rms, whatever `integrations` is; for a calibrated acceleration whose bandwidth
-    /// includes the upper limit.
+    /// includes the upper limit and that has a stretch of 0.4 s without a gap. Otherwise a warning states the reason.
     std::optional<double> machine_velocity;
+    /// Fraction of the record that it covers: not the ends of stretches between gaps.
+    std::optional<double> machine_velocity_coverage;
     std::vector<MarkLevel> marks, envelope_marks;  ///< levels at the marks, in the spectrum and in that of the envelope
     std::vector<std::string> warnings;
 };
@@ -69,8 +71,8 @@ struct AnalysedFile {
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& settings,
                           const std::function<void(double)>& progress);
 
-/// Uncertainty of a band's level, dB: the standard deviation given the averaging over its bins, and what the window leaks over its
-/// borders.
+/// Uncertainty of a band's level, dB: the standard deviation given the averaging over its bins, and what the window
+/// leaks over its borders.
 double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum);
 
 }  // namespace tactus::analysis

@@ -429,6 +429,8 @@ const Fields<Channel>& channel_fields() {
             .number("skewness", "skewness", fixed(2), of_report([](const R& r) { return r.moments.skewness(); }))
             .number("machine_velocity_rms", "velocity 10 to 1000 Hz (ISO 20816), rms", prefixed(4, "m/s"),
                     [](const Channel& c) { return c.of->machine_velocity; })
+            .number("machine_velocity_coverage", "", fixed(3),
+                    [](const Channel& c) { return c.of->machine_velocity_coverage; })
             .text("", "fundamental", fundamental_text)
             .number("fundamental_hz", "", fixed(3, "Hz"),
                     of_report([](const R& r) { return if_positive(r.fundamental.frequency); }))
