@@ -29,8 +29,9 @@ inline constexpr double min_peak_bins = 10.0;
 struct ResponsePeak {
     double hz = 0.0, level_db = 0.0, phase = 0.0, coherence = 0.0;  ///< phase in rad
     double deviation_db = 0.0;  ///< standard deviation of the level, by noise
-    double bins = 0.0;          ///< width at half power; 0: it does not fall so far
-    bool is_smeared = false;    ///< narrower than min_peak_bins, or the coherence dips: the level is too low
+    /// Width at half power; twice that of the other side where a neighbour follows before half power; 0: unknown.
+    double bins = 0.0;
+    bool is_smeared = false;  ///< narrower than min_peak_bins, or the coherence dips: the level may be too low
 };
 
 struct TwoChannels {
@@ -49,7 +50,9 @@ struct TwoChannels {
     /// s, of the output: mean slope of the phase where the coherence is above 0.9, of a dead time and of the resonances
     /// together; 0: unknown.
     double delay = 0.0;
-    std::vector<ResponsePeak> peaks;  ///< of the chosen estimate where the coherence is above 0.8, the highest 5
+    /// Of the chosen estimate, the highest 5: where the coherence is at least 0.8, or dips from at least 0.8 beside it,
+    /// as it does over a resonance that the segments do not resolve.
+    std::vector<ResponsePeak> peaks;
 
     const std::vector<std::complex<double>>& chosen() const;
 };

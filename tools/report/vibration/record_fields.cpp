@@ -90,7 +90,8 @@ const Fields<ReadRecord>& record_fields() {
                    [](const ReadRecord& r) -> const sound::ReadStretch& { return r.stretch; })
             .text("", "of the record",
                   [](const ReadRecord& r) { return r.stretch.is_whole() ? std::string() : r.stretch.text(); })
-            .warnings("", [](const ReadRecord& r) { return r.log ? r.log->missing() : std::vector<std::string>(); })
+            .warnings("missing",
+                      [](const ReadRecord& r) { return r.log ? r.log->missing() : std::vector<std::string>(); })
             .notes("", "record", [](const ReadRecord& r) { return analysis::understood(r.calibration, r.log, r.rate); })
             .child("calibration", "", calibration_fields(),
                    [](const ReadRecord& r) -> const sound::Calibration& { return r.calibration; })

@@ -57,10 +57,11 @@ std::vector<std::string> smeared(const TwoChannels& t) {
     std::vector<std::string> texts;
     for (const ResponsePeak& p : t.peaks)
         if (p.is_smeared)
-            texts.push_back(fmt::format(
-                "the peak at {:.2f} Hz is {:.1f} bins wide with a coherence of {:.3f}: its level is too low by more than "
-                "the stated uncertainty; choose a longer --segment than {}",
-                p.hz, p.bins, p.coherence, t.welch.segment));
+            texts.push_back(
+                fmt::format("the peak at {:.2f} Hz is {:.1f} bins wide with a coherence of {:.3f}: its level may be "
+                            "too low by more "
+                            "than the stated uncertainty; choose a longer --segment than {}",
+                            p.hz, p.bins, p.coherence, t.welch.segment));
     return texts;
 }
 
@@ -85,13 +86,13 @@ const Fields<TwoChannels>& channels_fields() {
             .number("delay_s", "", fixed(3, "ms", "s"), &T::delay)
             .number("", "delay (mean slope of the phase, with that of resonances)", fixed(3, "ms", "s"),
                     [](const T& t) { return coherent_fraction(t) > 0.0 ? std::optional(t.delay) : std::nullopt; })
-            .text("", "phase", [](const T&) {
-                return "with the delay, here and in --csv; -o keeps the delay apart as latency_s";
-            })
-            .rows("peaks", "peaks with a coherence of at least 0.8", peak_fields(),
+            .text("", "phase",
+                  [](const T&) { return "with the delay, here and in --csv; -o keeps the delay apart as latency_s"; })
+            .rows("peaks", "peaks with a coherence of at least 0.8 at or beside them", peak_fields(),
                   [](const T& t) -> const auto& { return t.peaks; })
-            .text("", "peaks",
-                  [](const T& t) { return t.peaks.empty() ? "none with a coherence of at least 0.8" : std::string(); });
+            .text("", "peaks", [](const T& t) {
+                return t.peaks.empty() ? "none with a coherence of at least 0.8 at or beside it" : std::string();
+            });
     return all;
 }
 

@@ -94,6 +94,21 @@ TEST_CASE("spectrum states kurtosis, skewness, distortion and the velocity of IS
     CHECK(sine["kurtosis"].get<double>() == Approx(1.5).epsilon(1e-3));
     CHECK(std::abs(sine["skewness"].get<double>()) < 1e-3);
     CHECK(sine["machine_velocity_rms"].is_null());  // not calibrated
+    CHECK(channel["machine_velocity_coverage"].get<double>() == Approx(5.75 / 6.0).margin(2e-3));
+
+    // A reason is stated where there is no velocity.
+    const auto warning_of = [&](const char* name) {
+        const json found =
+            folder.tactus(std::string("spectrum ") + name + " --json --full-scale '10 m/s^2'").only("rows");
+        CHECK(found["channels"][0]["machine_velocity_rms"].is_null());
+        return found["channels"][0]["warnings"].dump();
+    };
+    folder.sound("coarse.wav", tones({{100.0, 0.5}}, 4.0, 1600.0), 1, 1600);
+    CHECK(warning_of("coarse.wav").find("no velocity 10 to 1000 Hz: the record is valid up to 800 Hz only") !=
+          std::string::npos);
+    folder.sound("brief.wav", tones({{100.0, 0.5}}, 0.35, 8000.0), 1, 8000);
+    CHECK(warning_of("brief.wav").find("no velocity 10 to 1000 Hz: it needs a stretch of 0.4 s without a gap") !=
+          std::string::npos);
 }
 
 TEST_CASE("spectrum has octave filters and a cepstrum on request, and with --psd-only the spectrum alone") {
@@ -147,6 +162,32 @@ TEST_CASE("response warns of a peak that its segments smear, and not of one that
     CHECK(longer["warnings"].empty());
     const RecordOutcome text = folder.tactus("response plate.wav --segment 4096");
     CHECK((text.out + text.err).find("-o keeps the delay apart as latency_s") != std::string::npos);
+}
+
+TEST_CASE("response lists a peak that is narrower than a bin, and the width of a peak ends at its neighbour") {
+    const RecordFolder folder;
+    constexpr double rate = 8000.0;
+    // Quality 300: 0.6 Hz at half power, where a bin of 4096 samples has 1.95 Hz.
+    folder.sound("bar.wav", driven(173.0, 1.0 / 600.0, rate, 60.0, 0.02), 2, 8000);
+    const json narrow = folder.tactus("response bar.wav --json --segment 4096").answer();
+    REQUIRE(narrow["peaks"].size() == 1);
+    CHECK(narrow["peaks"][0]["hz"].get<double>() == Approx(173.0).margin(2.0));
+    CHECK(narrow["peaks"][0]["coherence"].get<double>() < 0.8);
+    REQUIRE(narrow["warnings"].size() == 1);
+    CHECK(narrow["warnings"][0].get<std::string>().find("may be too low by more than the stated uncertainty") !=
+          std::string::npos);
+
+    // Two resonances, each of quality 30, that are closer than their half-power points: widths are those of one.
+    std::vector<double> pair = driven(400.0, 1.0 / 60.0, rate, 60.0, 0.0);
+    const std::vector<double> other = driven(424.0, 1.0 / 60.0, rate, 60.0, 0.0);
+    for (std::size_t i = 1; i < pair.size(); i += 2) pair[i] -= other[i];
+    folder.sound("pair.wav", pair, 2, 8000);
+    const json both = folder.tactus("response pair.wav --json --segment 16384").answer();
+    REQUIRE(both["peaks"].size() == 2);
+    for (const json& peak : both["peaks"]) {
+        CAPTURE(peak.dump());
+        CHECK(peak["width_bins"].get<double>() * rate / 16384.0 < 24.0);
+    }
 }
 
 TEST_CASE("response between two channels is that of the system, with H1 below and H2 above where the output is noisy") {
