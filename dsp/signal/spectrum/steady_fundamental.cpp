@@ -30,8 +30,9 @@ constexpr std::size_t floor_block = 32;  // bins
 constexpr double explains_all = 0.9;  // fraction of the power
 // Of one record: lines of hum are multiples of one frequency, which wanders by less than this fraction meanwhile.
 constexpr double mains_drift = 4e-4;
-// Power relative to the strongest line of a comb from which another line counts: the rest may be chance.
-constexpr double min_relative_power = 0.01;
+// Power relative to the strongest line of a comb from which another order, and an order of a fraction of its rate,
+// counts: weaker ones may be chance.
+constexpr double min_order_power = 5e-4, min_fraction_power = 0.01;
 // Persistence of a line is measured in eighths of the record, over which the strokes of a saw average out. So does a
 // ring between strikes, which has the lines of a tone: combs of few strong lines must also be steady over pieces of few
 // periods, in which orders stay separate. Rings at 10 strikes per second with a quality of 10 have less than 0.95.
@@ -221,7 +222,7 @@ GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation
 /// Whether a line outside of a comb is an order of a fraction of its rate, and too strong for a coincidence.
 /// `strongest`: line of the comb, of that order.
 bool is_order_of_fraction(const NarrowLine& line, const NarrowLine& strongest, int order, double df) {
-    if (line.is_hum || line.power < min_relative_power * strongest.power) return false;
+    if (line.is_hum || line.power < min_fraction_power * strongest.power) return false;
     const double rate = strongest.frequency / order, deviation = strongest.deviation / order;
     for (int divisor = 2; divisor <= max_fraction; ++divisor) {
         const double multiple = std::round(line.frequency * divisor / rate);
@@ -464,7 +465,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     }
     for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i) {
         const NarrowLine& line = lines.found[i];
-        out.strong_lines += comb.order[i] > 0 && line.power >= min_relative_power * strongest->power;
+        out.strong_lines += comb.order[i] > 0 && line.power >= min_order_power * strongest->power;
         out.may_be_multiple |= comb.order[i] == 0 && is_order_of_fraction(line, *strongest, strongest_order, lines.df);
     }
     // A machine at another order of the mains is distinguished from hum by the absence of the first orders, or by their

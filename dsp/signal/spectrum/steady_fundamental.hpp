@@ -19,7 +19,7 @@ struct SteadyFundamental {
     double deviation = 0.0;
     double periods = 0.0;  ///< in the record, or in the segment beyond which the lines are smeared
     std::size_t lines = 0;  ///< number of orders found
-    std::size_t strong_lines = 0;  ///< of these, within 20 dB of the strongest
+    std::size_t strong_lines = 0;  ///< of these, within 33 dB of the strongest
     int highest_order = 0;
     double score = 0.0;  ///< log-likelihood that the lines are orders, relative to chance
     double rival = 0.0;  ///< Hz: the best other rate; 0: none
