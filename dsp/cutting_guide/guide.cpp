@@ -185,11 +185,14 @@ private:
             for (int n = 0; n < 4; ++n) q -= solid.value(q) * solid.normal(q);
             return q;
         };
+        // At an edge of two faces the steps may end beside the solid.
+        const auto is_on = [&](const Vec3& q) { return std::abs(solid.value(q)) < 0.1 * tube_tolerance; };
         Vec3 found = onto(start);
+        if (!is_on(found)) return start;
         for (int n = 0; n < 30; ++n) {
             const Vec3 normal = solid.normal(found), to = p - found;
             const Vec3 next = onto(found + 0.5 * (to - glm::dot(to, normal) * normal));
-            if (!(glm::length(p - next) < glm::length(to) - 1e-3 * tube_tolerance)) break;
+            if (!is_on(next) || !(glm::length(p - next) < glm::length(to) - 1e-3 * tube_tolerance)) break;
             found = next;
         }
         return found;

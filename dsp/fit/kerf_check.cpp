@@ -35,7 +35,8 @@ constexpr double share_of_spread = 0.5;
 constexpr double nearby = 3e-3;  // m: relief is measured about planes through the points within this distance
 constexpr double max_touch = 1e-3;  // m: farther from each other, faces do not touch
 constexpr double flat_relief = 0.1e-3;  // m rms, shared
-constexpr double flat_loss = 3e-3;  // m: 95 % of losses that are exponentially distributed around 1 mm, the width of a blade
+constexpr double flat_loss =
+    3e-3;  // m: 95 % of losses that are exponentially distributed around 1 mm, the width of a blade
 
 struct Spot {
     Vec3 at, normal;
@@ -236,15 +237,16 @@ std::vector<Touch> touches_of(const FitSurface& moving, const FitSurface& fixed,
     return touches;
 }
 
-/// The covariance of both heights about planes through the points around one, m². None for too few points.
-std::optional<double> covariance_around(const Touch& centre, const std::vector<Touch>& touches) {
+/// The covariance of both heights about planes through the points within `reach` (of `nearby`) of one, m². None for too few
+/// points.
+std::optional<double> covariance_around(const Touch& centre, const std::vector<Touch>& touches, double reach) {
     constexpr std::size_t terms = 3, min_around = 10;  // 1, u, v
     std::vector<double> matrix(terms * terms, 0.0), own(terms, 0.0), other(terms, 0.0);
     double products = 0.0;
     std::size_t count = 0;
     for (const Touch& t : touches) {
         const double row[terms] = {1.0, t.u - centre.u, t.v - centre.v};
-        if (!(row[1] * row[1] + row[2] * row[2] < 1.0)) continue;
+        if (!(row[1] * row[1] + row[2] * row[2] < reach * reach)) continue;
         const double mine = t.own - centre.own, its = t.other - centre.own;
         ++count;
         products += mine * its;
@@ -266,13 +268,17 @@ std::optional<double> covariance_around(const Touch& centre, const std::vector<T
 double shared_relief(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) {
     const std::vector<Touch> touches = touches_of(moving, fixed, pose);
     const std::size_t stride = 1 + touches.size() / max_paint;
-    double sum = 0.0, count = 0.0;
-    for (std::size_t n = 0; n < touches.size(); n += stride)
-        if (const auto covariance = covariance_around(touches[n], touches)) {
-            sum += *covariance;
-            count += 1.0;
-        }
-    return count > 0.0 ? std::sqrt(std::max(0.0, sum / count)) : 0.0;
+    // Sparse points, as of a wide pointshell, need more room.
+    for (const double reach : {1.0, 1.7}) {
+        double sum = 0.0, count = 0.0;
+        for (std::size_t n = 0; n < touches.size(); n += stride)
+            if (const auto covariance = covariance_around(touches[n], touches, reach)) {
+                sum += *covariance;
+                count += 1.0;
+            }
+        if (count > 0.0) return std::sqrt(std::max(0.0, sum / count));
+    }
+    return 0.0;
 }
 
 }  // namespace

@@ -126,6 +126,7 @@ std::vector<HumLine> find_hum(const Spectrum& spectrum, double fundamental) {
         const double reach = 0.5 * spectrum.df + range * place;
         const SpectralLine line = line_near(spectrum, place, std::max(2.0 * spectrum.df, reach));
         const auto top = static_cast<std::size_t>(std::lround(line.frequency / spectrum.df));
+        if (top < 3 || top + 3 >= spectrum.power.size()) return std::nullopt;
         // A steady line is as narrow as the window's main lobe; noise or a varying rate is wider.
         const double skirt = std::max(spectrum.power[top - 3], spectrum.power[top + 3]);
         const bool is_hum = line.snr_db >= threshold && spectrum.power[top] > 4.0 * skirt &&

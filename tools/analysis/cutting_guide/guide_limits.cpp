@@ -73,7 +73,7 @@ double GuideLimit::of(const GuideChoice& choice) const {
 }
 
 std::string GuideLimit::text_of(const GuideChoice& choice) const {
-    return fmt::format("{:.{}f} {}", of(choice) / si, unit == "mm" ? 1 : 0, unit);
+    return fmt::format("{:.3g} {}", of(choice) / si, unit);
 }
 
 std::span<const GuideLimit> guide_limits() { return limits; }

@@ -100,12 +100,17 @@ void add_predictive(const reconstruction::Flap& flap, const Place& place) {
         place(implant.head, implant.axis, 0.5 * implant.diameter, fmt::format("implant '{}'", implant.name));
 }
 
+/// m of base from the axis of a screw: the least wall stands around its hole.
+double room_around_screw(const cutting_guide::GuideSettings& set) {
+    return set.screw_radius + std::max(2.5 * mm, set.min_wall + 0.5 * mm);
+}
+
 /// m of base from a cut on, along `out`, so that a screw and its driver pass the wall of the slot at any height: the wall
 /// leans by `out` against the removal. `slot`: what of its width lies on that side.
 double room_for_screw(const GuideDesign& design, const Vec3& out, double slot) {
     const cutting_guide::GuideSettings& set = design.settings;
     const double lean = std::max(0.0, -glm::dot(out, glm::normalize(design.removal)));
-    return slot + set.wall + lean * (set.depth + 10.0 * mm) + 2.0 * (set.screw_radius + 2.5 * mm);
+    return slot + set.wall + lean * (set.depth + 10.0 * mm) + 2.0 * room_around_screw(set);
 }
 
 GuideDesign of_fibula(const FlapStudy& study, const GuideChoice& choice) {
@@ -144,7 +149,7 @@ GuideDesign of_fibula(const FlapStudy& study, const GuideChoice& choice) {
     const double from = std::max(low - end_beyond(true), donor.whole().low + 2.0 * mm),
                  to = std::min(high + end_beyond(false), donor.whole().high - 2.0 * mm);
     design.base.push_back({from_point(0.0), axis, from, to});
-    const double inside = design.settings.screw_radius + 2.5 * mm;
+    const double inside = room_around_screw(design.settings);
     for (const double s : {from + inside, to - inside})
         design.holes.push_back({from_point(s), -design.removal, design.settings.screw_radius,
                                 fmt::format("screw at {:.0f} mm on the line", s / mm), false});
@@ -205,7 +210,7 @@ GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
             std::max(design.settings.wall + design.settings.end, room_for_screw(design, -c.plane.normal, 0.0));
         design.base.push_back({c.plane.origin, c.plane.normal, -reach, beyond, c.plane});
         const Vec3 aside = glm::normalize(glm::cross(design.removal, c.plane.normal)),
-                   place = c.plane.origin - (reach - design.settings.screw_radius - 2.5 * mm) * c.plane.normal;
+                   place = c.plane.origin - (reach - room_around_screw(design.settings)) * c.plane.normal;
         // On a curved jaw the base is narrow at its end: there the holes move towards the cut and each other.
         const double room = reach - room_for_screw(design, -c.plane.normal, 0.0);
         for (const double side : {-5.0 * mm, 5.0 * mm})
@@ -240,7 +245,7 @@ std::vector<NearVessel> vessels_near(const PlannedGuide& guide, const geometry::
     auto measured = guide.made.tubes.begin();
     for (const reconstruction::FlapVessel& vessel : flap.vessels) {
         const NearVessel near{fmt::format("vessel '{}'", vessel.name), measured->distance, measured->at};
-        if (near.away < choice.limits.vessel) found.push_back(near);
+        if (near.away < std::max(choice.limits.vessel, choice.limits.touch)) found.push_back(near);
         ++measured;
     }
     const cutting_guide::BaseSpan& line = guide.design.base.front();
@@ -251,7 +256,8 @@ std::vector<NearVessel> vessels_near(const PlannedGuide& guide, const geometry::
         out -= glm::dot(out, line.axis) * line.axis;
         if (glm::length(out) > 0.0)
             near.is_covered = tree.sweep(p.at, reach * glm::normalize(out), choice.limits.perforator_radius) < 1.0;
-        if (near.is_covered || near.away < choice.limits.perforator) found.push_back(std::move(near));
+        if (near.is_covered || near.away < std::max(choice.limits.perforator, choice.limits.touch))
+            found.push_back(std::move(near));
     }
     return found;
 }
@@ -287,10 +293,10 @@ void warn_clinically(PlannedGuide& guide) {
             seat.play >= cutting_guide::max_play
                 ? std::string("the bone does not hold the guide along one direction, as along a smooth shaft: mark its "
                               "place by a screw or a distance from the end of the bone")
-                : fmt::format("with a gap of {:.1f} mm the guide can move by {:.1f} mm on the bone",
+                : fmt::format("with a gap of {:.3g} mm the guide can move by {:.1f} mm on the bone",
                               limits.seat_gap / mm, seat.play / mm));
     if (seat.play_angle > limits.max_turn)
-        warn("seat-angle", fmt::format("with a gap of {:.1f} mm the guide can turn by {:.1f}° on the bone",
+        warn("seat-angle", fmt::format("with a gap of {:.3g} mm the guide can turn by {:.1f}° on the bone",
                                        limits.seat_gap / mm, seat.play_angle / degree));
     if (seat.contact_share() < limits.min_contact_share)
         warn("contact", fmt::format("only {:.0f} % of the faces that look at the bone touch it; the others lie over "
@@ -310,9 +316,9 @@ void warn_clinically(PlannedGuide& guide) {
             if (const auto away = hole_to_cut(hole, cut); away && *away < limits.hole_to_cut)
                 warn("hole-near-cut", fmt::format("{} lies {:.1f} mm from cut {}", hole.name, *away / mm, cut.letter));
     for (const NearVessel& v : guide.vessels)
-        warn(v.is_perforator ? "perforator" : "vessel",
-             fmt::format("{} runs {:.2f} mm from the guide, less than {:.1f} mm (a placeholder)", v.name, v.away / mm,
-                         (v.is_perforator ? limits.perforator : limits.vessel) / mm));
+        if (const double limit = v.is_perforator ? limits.perforator : limits.vessel; v.away < limit)
+            warn(v.is_perforator ? "perforator" : "vessel",
+                 fmt::format("{} runs {:.2f} mm from the guide, less than {:.3g} mm", v.name, v.away / mm, limit / mm));
 }
 
 }  // namespace
@@ -358,8 +364,8 @@ void refuse_guide(const PlannedGuide& guide) {
     const double wanted = set.min_thickness() - cutting_guide::wall_slack;
     if (guide.made.wall && guide.made.wall->thickness < wanted) {
         throw Error(fmt::format(
-            "a wall {} is {:.2f} mm thick, less than {:.1f} mm (the thinnest part to print, {:.1f} mm, a placeholder, "
-            "less {:.1f} mm), at {}: more space between the segments ('between_space_mm' of the inputs), a narrower "
+            "a wall {} is {:.2f} mm thick, less than {:.3g} mm (the thinnest part to print, {:.3g} mm, "
+            "less {:.3g} mm), at {}: more space between the segments ('between_space_mm' of the inputs), a narrower "
             "slot "
             "(--blade, --clearance), three sides (--sides 3) or another approach (--turn) may leave more of it",
             near_slot(guide, guide.made.wall->at), guide.made.wall->thickness / mm, wanted / mm,
@@ -367,8 +373,7 @@ void refuse_guide(const PlannedGuide& guide) {
     }
     if (guide.made.thin_share > guide.choice.limits.max_thin_share)
         throw Error(fmt::format(
-            "{:.1f} % of the guide's volume are left out as thinner than {:.1f} mm, more than {:.0f} % (a "
-            "placeholder): a "
+            "{:.1f} % of the guide's volume are left out as thinner than {:.1f} mm, more than {:.3g} %: a "
             "thicker base (--thickness), thicker walls of the slots (--wall), more space between the segments "
             "('between_space_mm' of the inputs) or a lower least wall (--min-wall) keep more of it",
             100.0 * guide.made.thin_share, set.min_thickness() / mm, 100.0 * guide.choice.limits.max_thin_share));
@@ -379,7 +384,7 @@ void refuse_guide(const PlannedGuide& guide) {
     if (guide.seat.min_distance < set.offset - 0.1 * mm)
         throw Error(
             fmt::format("the guide comes within {:.2f} mm of the bone, closer than its offset of {:.2f} mm: a "
-                        "finer grid (--voxel) may mend that",
+                        "larger offset (--offset) may mend that",
                         guide.seat.min_distance / mm, set.offset / mm));
     if (!(guide.seat.contact_area > 0.0))
         throw Error("the guide does not touch the bone: choose another approach (--turn) or a wider base (--wrap)");
@@ -401,7 +406,7 @@ void refuse_guide(const PlannedGuide& guide) {
         if (const double share = fit.kept_area / slot.area(); share < set.min_wall_share)
             throw Error(fmt::format(
                 "of the wall of slot {} ({}) that lies on plan, {:.0f} % are left beside its neighbour, less than "
-                "{:.0f} % (a placeholder): more space between the segments ('between_space_mm' of the inputs), a lower "
+                "{:.3g} %: more space between the segments ('between_space_mm' of the inputs), a lower "
                 "slot (--depth), or another approach (--turn) leaves more",
                 slot.cut.letter, slot.cut.name, 100.0 * share, 100.0 * set.min_wall_share));
         if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
