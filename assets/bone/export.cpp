@@ -15,7 +15,7 @@ namespace tactus::bone {
 
 namespace {
 
-constexpr float air = -1000.0f;
+constexpr float air = -1000.0f, lowest_surface = -800.0f;  // HU: the field rises from air to the surface
 
 float threshold_of(const Bone& bone) {
     const auto text = bone.provenance.find("threshold");
@@ -31,7 +31,7 @@ class HuOfBone {
 public:
     HuOfBone(const Bone& bone, float surface)
         : bone_(bone),
-          surface_(surface),
+          surface_(std::max(surface, lowest_surface)),
           voxel_(static_cast<float>(
               std::max({bone.distance.spacing.x, bone.distance.spacing.y, bone.distance.spacing.z}))) {}
 

@@ -74,6 +74,17 @@ bool belongs_to(const fs::path& source, const fs::path& out, std::set<fs::path>&
 
 }  // namespace
 
+bool is_stream(const fs::path& out) {
+    const std::string name = out.string();
+    // Sent into a file, these are links to it.
+    if (name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/") ||
+        name.starts_with("/proc/self/fd/"))
+        return true;
+    std::error_code failed;
+    const fs::file_status found = fs::status(out, failed);
+    return !failed && fs::exists(found) && !fs::is_regular_file(found) && !fs::is_directory(found);
+}
+
 bool is_of_source(const fs::path& source, const fs::path& out) {
     std::error_code failed;
     std::set<fs::path> seen;

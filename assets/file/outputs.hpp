@@ -11,8 +11,12 @@ namespace tactus::file {
 /// plan, a task), also through other files.
 bool is_of_source(const std::filesystem::path& source, const std::filesystem::path& out);
 
-/// Throws Error if an output belongs to one of the sources (see is_of_source), occurs twice in the list, is a folder, or has no folder or one
-/// that may not be written to. Empty paths are skipped. Called first, because a result must never overwrite a patient's scan or another result.
+/// Whether a name stands for a stream: /dev/stdout, a pipe. It is written into, and has no format.
+bool is_stream(const std::filesystem::path& out);
+
+/// Throws Error if an output belongs to one of the sources (see is_of_source), occurs twice in the list, is a folder, or
+/// has no folder or one that may not be written to. Empty paths are skipped. Called first, because a result must never
+/// overwrite a patient's scan or another result.
 void check_outputs(std::span<const std::filesystem::path> sources, std::span<const std::filesystem::path> outputs);
 
 }  // namespace tactus::file

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
 
+#include "assets/file/outputs.hpp"
 #include "assets/file/part_lock.hpp"
 #include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
@@ -94,7 +95,17 @@ void sync_folder(const std::filesystem::path& folder) {
     ::close(handle);
 }
 
+/// A stream cannot be replaced: /dev/stdout is a link, and a pipe has a reader.
+void write_into(const std::filesystem::path& path, std::string_view bytes) {
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    const bool is_written = file && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    const bool is_closed = file && std::fclose(file) == 0;
+    if (!is_written || !is_closed)
+        throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+}
+
 void write_beside(const std::filesystem::path& path, std::string_view bytes, Disk disk) {
+    if (is_stream(path)) return write_into(path, bytes);
     const std::filesystem::path part = path.string() + ".part";
     const PartLock lock(part, path);
     const auto fail = [&](int code) {

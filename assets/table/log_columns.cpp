@@ -64,6 +64,7 @@ private:
     std::vector<std::string> wanted_in(const std::string& text) const {
         std::vector<std::string> names = names_in(text, [this](std::string_view name) { return is_name(name); });
         if (!selection_.list_entry) return names;
+        if (names.size() > 2) fail(fmt::format("'{}': at most two columns, as REFERENCE,OUTPUT", text));
         return {names[std::min(*selection_.list_entry, names.size() - 1)]};
     }
 

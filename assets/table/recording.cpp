@@ -39,6 +39,8 @@ LogSelection with_single_names(const LogSelection& selection, const std::vector<
     };
     const auto names_of = [&](const std::string& text) {
         std::vector<std::string> names = names_in(text, is_name);
+        if (selection.list_entry && names.size() > 2)
+            throw Error(fmt::format("'{}': at most two columns, as REFERENCE,OUTPUT", text));
         if (selection.list_entry) names = {names[std::min(*selection.list_entry, names.size() - 1)]};
         return names;
     };

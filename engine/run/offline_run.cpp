@@ -146,7 +146,7 @@ void OfflineRun::run(int threads, const std::function<void(double)>& progress) {
 void OfflineRun::advance(Flicks until) {
     if (advanced_.empty())
         for (const auto& group : timeline_.groups()) advanced_.push_back(group.get());
-    for (;;) {
+    while (!stop_.load(std::memory_order_relaxed)) {
         bool all_finished = false;
         GroupRuntime* const group = earliest_ready(advanced_, until, all_finished);
         if (all_finished) return;

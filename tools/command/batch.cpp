@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/batch.hpp"
 
+#include "assets/file/outputs.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/analysis/workers.hpp"
 #include "tools/command/progress.hpp"
@@ -59,8 +60,13 @@ std::size_t tell_failures(const std::vector<std::string>& failures) {
 }
 
 void check_batch_output(const std::filesystem::path& out, const std::vector<std::string>& endings, bool has_several) {
+    if (out.empty() || file::is_stream(out)) return;
     std::error_code failed;
-    if (out.empty() || (std::filesystem::exists(out, failed) && !std::filesystem::is_regular_file(out, failed))) return;
+    if (std::filesystem::is_directory(out, failed)) {
+        if (has_several) return;
+        throw Error(fmt::format("{}: is a folder; of one input a file is written, as {}", out.string(),
+                                fmt::join(endings, ", ")));
+    }
     const bool is_file = std::ranges::any_of(
         endings, [&](const std::string& ending) { return out.filename().string().ends_with(ending); });
     if (has_several && is_file)

@@ -81,8 +81,8 @@ void check_ending(const fs::path& out, const DeclaredOutput& output, const std::
     const OutputFormat& what = output.what;
     const std::string name = out.filename().string();
     std::error_code failed;
-    // A device or a pipe has no format, and whether an existing folder will do is for the verb to judge.
-    if (out.empty() || (fs::exists(out, failed) && !fs::is_regular_file(out, failed))) return;
+    // Whether an existing folder will do is for the verb to judge.
+    if (out.empty() || file::is_stream(out) || fs::is_directory(out, failed)) return;
     if (has_ending(name, what.endings) || (what.is_free && !has_ending(name, formats))) return;
     const std::string option = name_of(*output.option);
     if (what.endings.empty())

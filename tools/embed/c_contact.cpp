@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -88,12 +89,13 @@ contact::Voxmap field_of(const geometry::TriangleSurface& surface, double voxel)
 
 Pose pose_at(const double* poses, std::size_t index) {
     const double* const p = poses + 7 * index;
-    const Pose pose{{p[0], p[1], p[2]}, Quat(p[3], p[4], p[5], p[6])};
+    Pose pose{{p[0], p[1], p[2]}, Quat(p[3], p[4], p[5], p[6])};
     if (!is_valid(pose))
         throw Error(
             fmt::format("pose {} is not valid: seven finite numbers, px py pz qw qx qy qz, with a quaternion of "
                         "length 1, are needed",
                         index));
+    pose.orientation = glm::normalize(pose.orientation);
     return pose;
 }
 

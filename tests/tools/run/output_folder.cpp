@@ -107,9 +107,10 @@ TEST_CASE("a recording cannot have the name of a file that the run itself writes
         CHECK_THAT(refused.err, ContainsSubstring("p.toml:16:8: '" + std::string(name) + "' is the name of a file"));
         CHECK((!fs::exists(folder.path / "out") || fs::is_empty(folder.path / "out")));
     }
-    const std::string file = folder.write("p.toml", recording_patch).string(), out = (folder.path / "out").string();
+    const std::string file = folder.write("p.toml", std::string(recording_patch) + "file = \"table.log\"\n").string(),
+                      out = (folder.path / "out").string();
     const Outcome log =
-        folder.tactus("run " + file + live + "--seconds 0.1 --out " + out + " --log " + out + "/table.csv");
+        folder.tactus("run " + file + live + "--seconds 0.1 --out " + out + " --log " + out + "/table.log");
     CHECK(log.code == 2);
     CHECK_THAT(log.err, ContainsSubstring("--log") && ContainsSubstring("the patch records to this file"));
 }

@@ -170,7 +170,7 @@ Inspection inspect_volume(const std::filesystem::path& path, const InspectionOpt
     found.histogram = volume::histogram_of(found.grey.values, 24);
     found.range = {layers.range().first, layers.range().second};
     found.is_in_hu = volume::are_hu(about.hu, found.range[1]);
-    if (!found.is_in_hu && about.kind != volume::VolumeKind::labels)
+    if (!found.is_in_hu && about.kind == volume::VolumeKind::ct)
         found.notes.push_back(
             "the values are not HU, as of MR, of 8-bit images or of a scan without calibration; 'import' needs "
             "--hu-calibration or --rescale");

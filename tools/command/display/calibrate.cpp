@@ -144,11 +144,11 @@ Action declare_calibrate(VerbOptions& verb) {
     verb.add("--base", choice->base, "display file with the values of untouched parts");
     verb.output("--keep", choice->keep, {{".csv"}}, "write the touches as CSV, for --touches");
     verb.flag("--json", choice->json, "as JSON");
-    verb.check([choice = choice.get()] {
+    return [choice] {
         if (choice->device.empty() == choice->touches.empty())
             throw Error("choose the source of touches: --device DRIVER or --touches FILE");
-    });
-    return [choice] { return calibrate(*choice); };
+        return calibrate(*choice);
+    };
 }
 
 }  // namespace

@@ -137,7 +137,8 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, const report
 
 int spectrum(const SpectrumChoice& choice) {
     const std::vector<fs::path> files = analysis::expand_folders(choice.files);
-    const bool many = files.size() > 1;
+    const bool many = files.size() > 1 ||
+                      std::ranges::any_of(choice.files, [](const fs::path& one) { return fs::is_directory(one); });
     settings_of(choice, false);  // refuses what cannot be read, before the files are
     const report::SpectrumMethod method = method_of(choice);
     for (const fs::path& out : {choice.csv, choice.cepstrum}) check_batch_output(out, {".csv"}, many);

@@ -188,8 +188,9 @@ class _Type:
         self.callbacks = (_library.PREPARE(self._prepare), _library.PROCESS(_process), _library.RELEASE(_release))
 
     def _prepare(self, _context, setup, state, error) -> int:
-        memory = RunMemory.of_start()
+        memory = None
         try:
+            memory = RunMemory.of_start()
             given = setup.contents
             made = self.make(Setup(given.name.decode(), given.rate, given.max_frames, given.seed))
             state[0] = next(_numbers)
@@ -205,24 +206,26 @@ _types: list[_Type] = []
 
 
 def _process(state, given, error) -> int:
-    declared, process, memory_of = _nodes[state]
-    memory = memory_of()
-    block = Block(declared, memory, given.contents)
+    memory = block = None
     try:
+        declared, process, memory_of = _nodes[state]
+        memory = memory_of()
+        block = Block(declared, memory, given.contents)
         process(block)
         return 0
     except BaseException as failure:
         return _note(failure, memory, error)
     finally:
-        block._end()
+        if block is not None:
+            block._end()
 
 
 def _release(state) -> None:
     _nodes.pop(state, None)
 
 
-def _note(failure: BaseException, memory: RunMemory, error) -> int:
-    if memory.failure is None:
+def _note(failure: BaseException, memory: RunMemory | None, error) -> int:
+    if memory is not None and memory.failure is None:
         memory.failure = failure
     text = "".join(traceback.format_exception_only(type(failure), failure)).strip()
     # The innermost line of the author's code.
@@ -230,7 +233,7 @@ def _note(failure: BaseException, memory: RunMemory, error) -> int:
            if os.path.dirname(frame.filename) != os.path.dirname(__file__)]
     if own:
         text = f"{text} ({own[-1].filename}, line {own[-1].lineno})"
-    error.contents.text = text.encode()[:2000]
+    error.contents.text = text.encode(errors="replace")[:2000]
     return 1
 
 

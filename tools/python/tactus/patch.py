@@ -209,7 +209,7 @@ class Run:
         return library().tactus_time(self._pointer)
 
     def set(self, name: str, value: str | float) -> None:
-        call("set", self._pointer, name.encode(), str(value).encode())
+        self._memory.call("set", self._pointer, name.encode(), str(value).encode())
 
     def __setitem__(self, name: str, value: str | float) -> None:
         self.set(name, value)
@@ -255,6 +255,6 @@ class Run:
         """Ends the run and writes what belongs into its folder."""
         if self.hash:
             return
-        call("finish", self._pointer)
+        self._memory.call("finish", self._pointer)
         self.hash = f"{library().tactus_hash(self._pointer):016x}"
         self.summary = json.loads(library().tactus_summary(self._pointer).decode())

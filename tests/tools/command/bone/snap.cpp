@@ -163,7 +163,7 @@ TEST_CASE("an unbroken bone that does not lie on the fragment is said, with the 
     const Outcome doubted = folder.tactus(verb);
     INFO(doubted.out << doubted.err);
     CHECK(doubted.code == 1);
-    CHECK(doubted.out.find("! the unbroken bone lies more than 2 mm away from half of the fragment") !=
+    CHECK(doubted.out.find("warning: the unbroken bone lies more than 2 mm away from half of the fragment") !=
           std::string::npos);
     CHECK(doubted.out.find("--main") != std::string::npos);
     CHECK(json::parse(folder.tactus(verb + " --json").out)["intact"]["doubt"].is_string());

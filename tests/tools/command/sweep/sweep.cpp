@@ -110,7 +110,7 @@ TEST_CASE("a worker that is killed is replaced, and its point is tried again", "
     const fs::path once = folder.write("once.toml", two_hundred_points(kill));
     const Outcome failed = folder.tactus("sweep run " + once.string() + " -o " + in(folder, "b") + " --jobs 2");
     CHECK(failed.code == 1);
-    CHECK(failed.out.starts_with("failed: 20 points: the worker was killed by signal 9"));
+    CHECK(failed.out.find("failed: 20 points: the worker was killed by signal 9") != std::string::npos);
     CHECK(status_of(folder, "b").failed == 20);
     // Run again, they succeed.
     CHECK(folder.tactus("sweep run " + once.string() + " -o " + in(folder, "b") + " --jobs 2").code == 0);
@@ -405,7 +405,7 @@ x = "level"
     const Outcome run = folder.tactus("sweep run " + file.string() + " -o " + in(folder, "a") + " --jobs 2");
     CAPTURE(run.out, run.err);
     CHECK(run.code == 1);
-    CHECK(run.out.starts_with("failed: 10 points: exit code 3: no seven\n"));
+    CHECK(run.out.find("failed: 10 points: exit code 3: no seven; such as point ") != std::string::npos);
     CHECK(folder.tactus("sweep plot " + in(folder, "a") + " -o " + in(folder, "line.svg")).code == 0);
     CHECK(slurp(folder.path / "line.svg").find("level, N") != std::string::npos);
     CHECK(folder
