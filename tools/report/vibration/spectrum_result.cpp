@@ -3,6 +3,7 @@
 
 #include "dsp/core/readable.hpp"
 #include "dsp/signal/spectrum/decibels.hpp"
+#include "dsp/signal/spectrum/mains.hpp"
 #include "tools/analysis/vibration/level_reference.hpp"
 #include "tools/analysis/vibration/verdict.hpp"
 #include "tools/counted.hpp"
@@ -109,11 +110,12 @@ std::vector<Line> named_lines(const Channel& c) {
             lines, [&](const Line& other) { return std::abs(other.level.hz - l.frequency) < r.lines.df; });
     };
     const signal::FundamentalEstimate& f = r.fundamental;
+    const bool may_be_hum = f.may_be_hum || (!f.is_certain() && signal::is_mains_order(f.frequency));
     for (const signal::Harmonic& h : r.harmonics)
         if (h.present)
             all.push_back(line_of(
                 c, h,
-                f.may_be_hum ? analysis::uncertain_order(h.order, f.frequency) : fmt::format("order {}", h.order)));
+                may_be_hum ? analysis::uncertain_order(h.order, f.frequency) : fmt::format("order {}", h.order)));
     for (const signal::HumLine& h : r.hum)
         if (!is_named(h))
             all.push_back(line_of(c, h,
