@@ -29,7 +29,7 @@ std::vector<float> buzz(double frequency, double noise, double rate, double seco
 
 TEST_CASE("the rate of a buzz of one second is heard to 0.06 Hz, whatever the sample rate, in silence and in noise") {
     for (const double sample_rate : {22050.0, 44100.0, 48000.0, 96000.0})
-        for (const double frequency : {75.0, 150.3, 233.0, 333.3})
+        for (const double frequency : {75.0, 152.3, 233.0, 333.3})
             for (const double noise : {0.0, 0.1}) {
                 INFO(sample_rate << " Hz, " << frequency << " Hz, noise " << noise);
                 const signal::FundamentalEstimate heard =

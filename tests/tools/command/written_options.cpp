@@ -102,11 +102,11 @@ void for_each_verb(const CLI::App& app, const std::string& name,
 }
 
 /// The program's verbs as the command line declares them.
-struct Verbs {
+struct AllVerbs {
     CLI::App app{"", "tactus"};
     DeclaredVerbs declared;
 
-    Verbs() { command::declare(app, command::tactus_program(), declared); }
+    AllVerbs() { command::declare(app, command::tactus_program(), declared); }
     void each(const std::function<void(const CLI::App&, const std::string&)>& visit) const {
         for_each_verb(app, "", visit);
     }
@@ -116,7 +116,7 @@ struct Verbs {
 
 TEST_CASE("no verb overwrites its input: each input as each output is refused, and stays as it was") {
     const Folder folder;
-    const Verbs verbs;
+    const AllVerbs verbs;
     std::set<std::string> tried;
     verbs.each([&](const CLI::App& app, const std::string& name) {
         for (const CLI::Option* output : app.get_options()) {
@@ -159,7 +159,7 @@ TEST_CASE("no verb overwrites its input: each input as each output is refused, a
 
 TEST_CASE("no verb writes a file whose ending promises another format: it is refused before any input is read") {
     const Folder folder;
-    const Verbs verbs;
+    const AllVerbs verbs;
     const std::vector<std::string> formats = command::written_formats(verbs.declared);
     CHECK(std::ranges::find(formats, ".vdb") != formats.end());
     std::size_t refused = 0;
@@ -200,7 +200,7 @@ TEST_CASE("no verb writes a file whose ending promises another format: it is ref
 }
 
 TEST_CASE("every option that a verb writes to is declared as an output") {
-    const Verbs verbs;
+    const AllVerbs verbs;
     std::set<std::string> names;
     verbs.each([&](const CLI::App& app, const std::string&) {
         for (const CLI::Option* option : app.get_options())
