@@ -479,10 +479,8 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
     const std::size_t eighth = kept_.size() / eighths;
     const auto few_periods = static_cast<std::size_t>(std::ceil(periods_per_piece * rate_ / comb.frequency));
-    // A rate that wanders leaves its line within an eighth.
-    const bool is_long = out.strong_lines > few_lines && out.is_sharp;
-    out.persistence =
-        persistence_of(kept_, rate_, *strongest, lines.df, is_long ? eighth : std::min(eighth, few_periods));
+    out.persistence = persistence_of(kept_, rate_, *strongest, lines.df,
+                                     out.strong_lines > few_lines ? eighth : std::min(eighth, few_periods));
     out.is_persistent = out.persistence >= (out.strong_lines > few_lines ? min_persistence : min_persistence_of_few);
     out.confidence_without_hum = probability_of(out);
     out.confidence = out.is_at_mains ? 0.0 : out.confidence_without_hum;
