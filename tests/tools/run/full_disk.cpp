@@ -221,7 +221,7 @@ TEST_CASE("bones and pictures that find no room are named, and the rest of the r
     if (is_sanitized()) return;
     const Folder folder;
     for (const std::string what : {".vdb", ".png"}) {
-        const std::string out = "out" + what;
+        const std::string out = "out-" + what.substr(1);
         const Outcome full =
             on_failing_disk(folder, "FAILING_DISK_PATH=" + out + "/bone" + what + ":" + out + "/frame_0001",
                             "render saw-training --seconds 0.2 --frames 2 --size 200x120 --json --out " + out);

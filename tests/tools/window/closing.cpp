@@ -92,8 +92,8 @@ TEST_CASE("a window closed in a pause asks about the steps that wait, and saves 
     plan::save_case_plan(plan, file);
     const auto is_locked = [&] { return plan::state_of(plan::load_case_plan(file)).arrangement.is_locked(2); };
     REQUIRE_FALSE(is_locked());
-    // The part is chosen first: beside a run that begins, its bone may not be drawn yet.
-    folder.write("script", "frames 3\npress \"part fragment_03\"\nframes 3\nrun\nuntil 0.3\npause\nuntil paused\n"
+    // The part is chosen first: beside a run that begins, its bone may not be drawn yet. Bones appear as they are read.
+    folder.write("script", "wait 4\nframes 3\npress \"part fragment_03\"\nframes 3\nrun\nuntil 0.3\npause\nuntil paused\n"
                            "press \"lock\"\nframes 3\nshut\nframes 400\npress \"save steps\"\nwait 30\n");
     const Outcome done = on(display, folder, "view a.plan.json --layout plan --view-script script");
     INFO(done.err);
