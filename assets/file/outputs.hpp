@@ -11,7 +11,7 @@ namespace tactus::file {
 /// plan, a task), also through other files.
 bool is_of_source(const std::filesystem::path& source, const std::filesystem::path& out);
 
-/// Whether a name stands for a stream: /dev/stdout, a pipe. It is written into, and has no format.
+/// Whether a path is a stream, such as /dev/stdout or a pipe: output is written into it, under any ending.
 bool is_stream(const std::filesystem::path& out);
 
 /// Throws Error if an output belongs to one of the sources (see is_of_source), occurs twice in the list, is a folder, or

@@ -10,9 +10,8 @@
 //
 // Rough faces that interlock are the evidence that no bone is lost. Only relief that both faces share counts, measured
 // about planes through the points within 3 mm. A freehand saw cut is wavy, and its waves close over the lost bone like
-// a whole break; but the waves are long, because the blade must follow them (tested: a radius of 6 mm and more; tighter ones
-// are taken for relief), and the grain that the teeth leave differs
-// between the faces. The rms height of a whole face contains the waves, and that of one face its grain.
+// a whole break; but the waves are long, because the blade must follow them (tested: a radius of 6 mm and more;
+// tighter ones are taken for relief), and the grain that the teeth leave differs between the faces. The rms height of a whole face contains the waves, and that of one face its grain.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// QUEST+ (Watson 2017) for one threshold: the next level is the one whose answer is expected to tell most about it.
+// QUEST+ (Watson 2017) for one threshold: the next level is the one whose answer is expected to inform most
+// about it.
 #pragma once
 
 #include "dsp/psychophysics/psychometric.hpp"
@@ -20,9 +21,9 @@ struct QuestSettings {
     double target = 0.75;  ///< probability of a correct answer at the threshold, between guess and 1 - lapse
 };
 
-/// Slopes and lapses are nuisances: the entropy is that of the threshold alone (psi-marginal, Prins 2013). With the entropy of all
-/// parameters half of the trials go to levels that tell of the slope: after 60 trials the error of the threshold is 0.088 in
-/// log10 instead of 0.073 (`tactus bench experiments`).
+/// Slopes and lapses are not reported: the entropy is that of the threshold alone (psi-marginal, Prins 2013). With the
+/// entropy of all parameters many trials go to levels that inform about the slope; after 60 trials the error of the
+/// threshold was then 0.088 in log10 instead of 0.073 (`tactus bench experiments`).
 class QuestPlus {
 public:
     /// Throws Error when a list is empty, not ascending, when a probability would be outside of [0, 1], or when no level has

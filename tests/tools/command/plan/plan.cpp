@@ -145,8 +145,8 @@ TEST_CASE("exported transforms and landmarks, read by other code, move the scan 
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 3; ++column)
             CHECK(turn[3 * row + column].get<double>() == Approx(transform.m[column][row]).margin(1e-12));
-    const Pose told = pose_in(json::parse(done.out)["written"][1]["pose"]);
-    CHECK(glm::length(transform.back(told.apply(Vec3(0.01, 0.02, 0.03)) / mm) - Vec3(10.0, 20.0, 30.0)) < 1e-9);
+    const Pose printed = pose_in(json::parse(done.out)["written"][1]["pose"]);
+    CHECK(glm::length(transform.back(printed.apply(Vec3(0.01, 0.02, 0.03)) / mm) - Vec3(10.0, 20.0, 30.0)) < 1e-9);
     CHECK(boxes.run("export", "--format ply --out " + boxes.file("ply")).code == 0);
     CHECK(mesh::load_mesh(boxes.file("ply/a.ply")).vertices.size() == 8);
 }
