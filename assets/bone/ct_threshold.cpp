@@ -39,7 +39,7 @@ CtThreshold suggested_threshold(const volume::Histogram& histogram, volume::HuKi
         return {common_for_bone, "common for bone; the values show no soft tissue around it", common_for_bone};
     // Where bone is rare or absent the last split lies between soft tissues.
     if (split.threshold < min_of_bone)
-        return {common_for_bone, "common for bone; the values alone do not tell it from soft tissue", common_for_bone};
+        return {common_for_bone, "common for bone; soft tissue may have the same values", common_for_bone};
     return found(split.threshold, split.has_air ? "Otsu's method, after air was split off" : "Otsu's method");
 }
 

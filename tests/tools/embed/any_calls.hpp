@@ -64,7 +64,7 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
     std::vector<double> samples(3000);
     for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<double>(i % 17);
     for (int call = 0; call < count; ++call) {
-        tactus_error* const told = pick(4) ? &error : nullptr;
+        tactus_error* const wanted_error = pick(4) ? &error : nullptr;
         tactus_options options{};
         options.size = pick(9) ? sizeof(options) : static_cast<std::size_t>(pick(100));
         options.seconds = number();
@@ -74,18 +74,18 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
         bool has_failed = false;
         double* const room = pick(5) ? values.data() : nullptr;
         switch (pick(21)) {
-            case 0: has_failed = tactus_configure(patch, word(), told) < 0; break;
-            case 1: has_failed = tactus_use_asset(patch, word(), told) < 0; break;
-            case 2: has_failed = tactus_attach_hand(patch, word(), nullptr, told) < 0; break;
+            case 0: has_failed = tactus_configure(patch, word(), wanted_error) < 0; break;
+            case 1: has_failed = tactus_use_asset(patch, word(), wanted_error) < 0; break;
+            case 2: has_failed = tactus_attach_hand(patch, word(), nullptr, wanted_error) < 0; break;
             case 3:
                 if (run) break;
-                run = tactus_start(patch, pick(2) ? &options : nullptr, told);
+                run = tactus_start(patch, pick(2) ? &options : nullptr, wanted_error);
                 has_failed = !run;
                 break;
-            case 4: has_failed = tactus_advance(run, std::min(number(), 0.002), told) < 0; break;
-            case 5: has_failed = tactus_render(run, told) < 0; break;
-            case 6: has_failed = tactus_set(run, word(), word(), told) < 0; break;
-            case 7: has_failed = tactus_find_hand(run, word(), told) < 0; break;
+            case 4: has_failed = tactus_advance(run, std::min(number(), 0.002), wanted_error) < 0; break;
+            case 5: has_failed = tactus_render(run, wanted_error) < 0; break;
+            case 6: has_failed = tactus_set(run, word(), word(), wanted_error) < 0; break;
+            case 7: has_failed = tactus_find_hand(run, word(), wanted_error) < 0; break;
             case 8:
                 motion.position[pick(3)] = number();
                 tactus_move_hand(run, pick(3) - 1, pick(5) ? &motion : nullptr);
@@ -93,12 +93,12 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
             case 9: tactus_hand_force(run, pick(3) - 1, room); break;
             case 10: {
                 tactus_output_info info{};
-                has_failed = tactus_output(run, word(), pick(2), pick(2) ? &info : nullptr, told) < 0;
+                has_failed = tactus_output(run, word(), pick(2), pick(2) ? &info : nullptr, wanted_error) < 0;
                 break;
             }
             case 11: tactus_newest(run, pick(4) - 1, room); break;
             case 12: tactus_fetch(run, pick(4) - 1, nullptr, room, 4); break;
-            case 13: has_failed = tactus_finish(run, told) < 0; break;
+            case 13: has_failed = tactus_finish(run, wanted_error) < 0; break;
             case 14:
                 tactus_hash(run), tactus_summary(run), tactus_time(run), tactus_output_name(run, pick(50) - 1);
                 tactus_available(run, pick(4) - 1);
@@ -106,12 +106,13 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
             case 15:
                 has_failed = tactus_spectrum(pick(5) ? samples.data() : nullptr, static_cast<std::size_t>(pick(3000)),
                                              1e3 * number(), static_cast<std::size_t>(pick(300)), room, room,
-                                             static_cast<std::size_t>(pick(64)), told) == 0;
+                                             static_cast<std::size_t>(pick(64)), wanted_error) == 0;
                 break;
             case 16: {
                 tactus_comparison comparison{};
-                has_failed = tactus_compare(samples.data(), static_cast<std::size_t>(pick(3000)), 2e3 * number(),
-                                            samples.data() + 7, 2000, 1e3, pick(5) ? &comparison : nullptr, told) < 0;
+                has_failed =
+                    tactus_compare(samples.data(), static_cast<std::size_t>(pick(3000)), 2e3 * number(),
+                                   samples.data() + 7, 2000, 1e3, pick(5) ? &comparison : nullptr, wanted_error) < 0;
                 break;
             }
             case 17: {
@@ -119,7 +120,7 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
                                                         pick(4) ? samples.data() : nullptr};
                 tactus_exposure exposure{};
                 has_failed = tactus_hand_arm_exposure(axes.data(), static_cast<std::size_t>(pick(3000)), 1e3 * number(),
-                                                      number(), pick(5) ? &exposure : nullptr, told) < 0;
+                                                      number(), pick(5) ? &exposure : nullptr, wanted_error) < 0;
                 break;
             }
             case 18: {
@@ -135,7 +136,7 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
                 type.parameters = &parameter;
                 type.parameter_count = pick(2);
                 if (pick(5)) type.process = [](void*, const tactus_block*, tactus_error*) { return 0; };
-                has_failed = tactus_declare_node(pick(5) ? &type : nullptr, told) < 0;
+                has_failed = tactus_declare_node(pick(5) ? &type : nullptr, wanted_error) < 0;
                 break;
             }
             case 19: {
@@ -151,17 +152,17 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
                 tactus_contact_settings settings{sizeof(settings), number(), 0.0, 0.002};
                 if (pick(3) == 0) {
                     tactus_contact* const contact =
-                        tactus_make_contact(&moving, &fixed, pick(5) ? &settings : nullptr, told);
+                        tactus_make_contact(&moving, &fixed, pick(5) ? &settings : nullptr, wanted_error);
                     has_failed = !contact;
                     if (contact) {
                         tactus_contact_sum sum{};
-                        has_failed = tactus_contact_at(contact, room, 1, pick(5) ? &sum : nullptr, told) < 0;
+                        has_failed = tactus_contact_at(contact, room, 1, pick(5) ? &sum : nullptr, wanted_error) < 0;
                     }
                     tactus_free_contact(contact);
                     break;
                 }
                 has_failed = tactus_register(pick(9) ? &moving : nullptr, &fixed, pick(2),
-                                             pick(9) ? &registration : nullptr, told) < 0;
+                                             pick(9) ? &registration : nullptr, wanted_error) < 0;
                 break;
             }
             default:
@@ -170,7 +171,7 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
                     run = nullptr;
                 }
         }
-        if (told && has_failed != (error.text[0] != '\0')) std::abort();
+        if (wanted_error && has_failed != (error.text[0] != '\0')) std::abort();
     }
     // In either order.
     if (pick(2)) tactus_free_patch(std::exchange(patch, nullptr));
