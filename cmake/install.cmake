@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where. It needs the targets tactus, tactus-bench and bundled_library.
+# What `cmake --install` puts where. It needs the targets tactus, tactus-full, tactus-bench and bundled_library.
 include(GNUInstallDirs)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME command)
 set(installed_library ${CMAKE_INSTALL_DATADIR}/tactus/library)
@@ -13,7 +13,7 @@ function(tactus_place definition destination)
 endfunction()
 
 tactus_place(TACTUS_INSTALLED_LIBRARY ${CMAKE_INSTALL_FULL_DATADIR}/tactus tools/run/load_plan.cpp)
-install(TARGETS tactus tactus-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS tactus tactus-full tactus-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Not for users to call: the command finds it from its own place.
 install(TARGETS tactus-device-host tactus-scan-decoder RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tactus COMPONENT common)

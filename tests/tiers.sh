@@ -104,7 +104,7 @@ slice() {
 # What must pass before a change lands.
 landing() {
     local preset=$1 status=0 chosen
-    phase "build: product" build "$preset" tactus bundled_library
+    phase "build: product" build "$preset" tactus tactus-full bundled_library
     phase "build: tests" build "$preset"
     has_cases "$preset" fast slow display kernel live || status=1
     phase "tests: fast" run_ctest "$preset" "$(jobs)" -L '^fast$' || status=1

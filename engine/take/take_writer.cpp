@@ -3,7 +3,6 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
-#include "assets/file/part.hpp"
 #include "assets/file/toml_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/volume/file_hash.hpp"
@@ -123,15 +122,6 @@ std::uint64_t hash_of_asset(const fs::path& path) {
             hash.add_word(own.value());
         }
     return hash.value();
-}
-
-std::string build_identity() {
-    static const std::string identity = [] {
-        Hash hash;
-        file::add_file(hash, file::this_object());
-        return fmt::format("{:016x}", hash.value());
-    }();
-    return identity;
 }
 
 std::string cpu_family() {

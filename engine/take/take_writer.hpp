@@ -107,7 +107,7 @@ private:
 
 /// Returns the hash of a file's bytes; for a text that names other files, including their bytes. Throws Error.
 std::uint64_t hash_of_asset(const std::filesystem::path& path);
-/// Identifies the build of the running program.
+/// Identifies the code that computes: the same in all programs of one build (cmake/identity.cmake).
 std::string build_identity();
 /// Returns vendor, family and model of the processor, as far as they may affect rounding.
 std::string cpu_family();

@@ -20,7 +20,7 @@ if(NOT installed STREQUAL built)
   message(FATAL_ERROR "the installed command renders ${installed}, the built one ${built}")
 endif()
 
-foreach(part bin/tactus-bench libexec/tactus/tactus-device-host share/doc/tactus/README.md share/doc/tactus/docs/reference/nodes.md
+foreach(part bin/tactus-full bin/tactus-bench libexec/tactus/tactus-device-host share/doc/tactus/README.md share/doc/tactus/docs/reference/nodes.md
              share/tactus/library/cases/mandible-twelve/case.plan.json share/tactus/library/equalisers/saw-vibration.toml
              share/tactus/library/displays/mirror.toml share/tactus/library/patches/parts/handle.toml)
   if(NOT EXISTS ${SCRATCH}/moved/${part})
@@ -32,13 +32,15 @@ endforeach()
 # slow to load are those of modules.
 find_program(READELF readelf)
 if(READELF)
-  execute_process(COMMAND ${READELF} -d ${SCRATCH}/moved/bin/tactus OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
-  if(dynamic MATCHES "RPATH|RUNPATH")
-    message(FATAL_ERROR "the installed command has an rpath:\n${dynamic}")
-  endif()
-  if(dynamic MATCHES "openvdb")
-    message(FATAL_ERROR "the command loads OpenVDB at its start:\n${dynamic}")
-  endif()
+  foreach(program tactus tactus-full)
+    execute_process(COMMAND ${READELF} -d ${SCRATCH}/moved/bin/${program} OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
+    if(dynamic MATCHES "RPATH|RUNPATH")
+      message(FATAL_ERROR "the installed ${program} has an rpath:\n${dynamic}")
+    endif()
+    if(dynamic MATCHES "openvdb" OR (program STREQUAL "tactus" AND dynamic MATCHES "glfw|imgui"))
+      message(FATAL_ERROR "${program} loads at its start what few runs need:\n${dynamic}")
+    endif()
+  endforeach()
 endif()
 # Programs with a patch inside are built with what was installed, and run.
 set(ENV{LD_LIBRARY_PATH} ${SCRATCH}/moved/${LIBDIR})

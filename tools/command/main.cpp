@@ -1,19 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/analysis/beside.hpp"
-#include "tools/command/catalogue.hpp"
+// `tactus`: the verbs that a patch needs to be written, run and replayed without a window. It starts tactus-full for all
+// others: a newcomer's first run does not wait until the window, the analyses and their reports are compiled, and a run
+// without a window does not load their libraries.
+#include "tools/command/options.hpp"
+#include "tools/command/other_program.hpp"
+#include "tools/command/run/run.hpp"
+#include "tools/command/standard_streams.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/terminal.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+namespace tactus::command {
+
+// CMakeLists.txt names their files.
+#define TACTUS_RUNNER_VERBS(X) \
+    X(new)                     \
+    X(run)                     \
+    X(render)                  \
+    X(check)                   \
+    X(draw)                    \
+    X(nodes)                   \
+    X(set)                     \
+    X(trigger)                 \
+    X(replay)                  \
+    X(measure)                 \
+    X(equalise)                \
+    X(devices)                 \
+    X(cache)                   \
+    X(bench)
+
+#define TACTUS_DECLARE(name) Verb name##_verb();
+TACTUS_RUNNER_VERBS(TACTUS_DECLARE)
+#undef TACTUS_DECLARE
+
+namespace {
+
+std::vector<std::string> given;  // the words of the command line
+
+int run_full() {
+    const std::string verb =
+        given.empty() || given.front().starts_with('-') ? "the help of all verbs" : fmt::format("'{}'", given.front());
+    run_beside("tactus-full", verb + " and the window", given);
+}
+
+}  // namespace
+
+int run_in_window(const window::ViewedRunChoice&, const std::atomic<bool>&) { return run_full(); }
+
+}  // namespace tactus::command
 
 int main(int argc, char** argv) {
-    // If a standard stream is closed, the next opened file would get its descriptor, and messages would be written into
-    // that file.
-    for (int handle = ::open("/dev/null", O_RDWR); handle >= 0; handle = ::open("/dev/null", O_RDWR))
-        if (handle > STDERR_FILENO) {
-            ::close(handle);
-            break;
-        }
-    const int code = tactus::command::command_line(tactus::command::tactus_program(), argc, argv);
-    tactus::analysis::end_beside();
-    return code;
+    using namespace tactus;
+    using namespace tactus::command;
+    hold_standard_streams();
+    given.assign(argv + std::min(argc, 1), argv + argc);
+#define TACTUS_LIST(name) name##_verb(),
+    const Verbs verbs{TACTUS_RUNNER_VERBS(TACTUS_LIST)};
+#undef TACTUS_LIST
+    const auto is_own = [&](const Verb& verb) { return !given.empty() && given.front() == verb.name; };
+    if (std::any_of(verbs.begin(), verbs.end(), is_own))
+        return command_line({"tactus", "Tactus: patches of nodes for haptics, from 60 Hz to audio rate", verbs}, argc,
+                            argv);
+    try {
+        return run_full();
+    } catch (const std::exception& error) {
+        say(stderr, fmt::format("tactus: {}\n", error.what()));
+        return bad_input;
+    }
 }

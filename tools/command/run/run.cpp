@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/command/run/run.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
@@ -9,7 +10,6 @@
 #include "tools/run/stop_signals.hpp"
 #include "tools/run/summary.hpp"
 #include "tools/terminal.hpp"
-#include "tools/window/view.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ namespace {
 
 int run(const window::ViewedRunChoice& choice) {
     const std::atomic<bool>& interrupted = stop_on_signals();
-    if (choice.view.wanted) return window::view_run(choice, interrupted);
+    if (choice.view.wanted) return run_in_window(choice, interrupted);
     if (!choice.view.scan.empty()) throw Error("--scan: slices of a scan are shown in the window; add --view");
     compile::AssetCache assets;
     RunSession session(choice, assets);

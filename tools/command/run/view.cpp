@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/window/view.hpp"
+#include "tools/command/run/run.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/run/stop_signals.hpp"
 
@@ -22,6 +23,10 @@ Action declare_view(VerbOptions& verb) {
 }
 
 }  // namespace
+
+int run_in_window(const window::ViewedRunChoice& choice, const std::atomic<bool>& interrupted) {
+    return window::view_run(choice, interrupted);
+}
 
 Verb view_verb() {
     return {"view", "open a window: on a take, with its values and bones at any instant, on a patch, or to choose",

@@ -22,7 +22,7 @@ std::vector<std::string> failures_of(const SweepState& s) {
     return all;
 }
 
-std::vector<std::string> notes_of(const SweepState& s) {
+std::vector<std::string> sweep_notes_of(const SweepState& s) {
     const Results& r = *s.results;
     std::vector<std::string> all;
     if (r.repeated() > r.conflicts().size())
@@ -109,7 +109,7 @@ const Fields<SweepState>& sweep_state_fields() {
             .number("seconds_per_point", "time of a point", significant(3, "s"), &S::seconds_per_point)
             .number("seconds_left", "", significant(3, "s"), &S::seconds_left)
             .rows("failures", "", failure_fields(), &S::failures)
-            .notes("", "note", notes_of)
+            .notes("", "note", sweep_notes_of)
             .text("hash", "results", [](const S& s) { return fmt::format("{:016x}", s.results->hash()); });
     return all;
 }
