@@ -46,7 +46,8 @@ struct GripperOutput {
         if (recover.value != asked_ && found == control::Fault::none) reason_ = control::Fault::none;
         asked_ = recover;
         const bool is_overdue = port_->overdue != control::Fault::none;
-        const bool still = reason_ != control::Fault::none || port_->hold_off || is_overdue;
+        const bool is_faulty = reason_ != control::Fault::none || is_overdue || upstream() != control::Fault::none;
+        const bool still = is_faulty || port_->hold_off;
         MotorDrive& motors = port_->motors;
         motors.speed = {still ? 0.0 : finger_speed.get(), still ? 0.0 : second};
         motors.free = !still && low_friction >= 0.5;
@@ -56,7 +57,7 @@ struct GripperOutput {
         given = motors.speed[0];
         const double fastest = port_->info.max_speed;
         cycles = fastest > 0.0 ? std::min(1.0, std::abs(motors.speed[0]) / fastest) * drive_limit : 0.0;
-        holds = reason_ != control::Fault::none;
+        holds = is_faulty;
         held_s_ += still ? tick.elapsed_seconds() : 0.0;
     }
 

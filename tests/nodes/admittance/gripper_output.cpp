@@ -31,8 +31,12 @@ TEST_CASE("a fault that comes by a wire holds a gripper until its source goes on
     gripper.node.run(50);
     CHECK(gripper.port().fault == Fault::stuck_encoder);
     CHECK(gripper.port().state == ForceState::by_source);
+    CHECK(gripper.port().motors.speed[0] == 0.0);
+    CHECK(gripper.node.last<bool>("holds"));
     gripper.node.run(60);
     CHECK(gripper.port().state == ForceState::on);
+    CHECK(gripper.port().motors.speed[0] == Approx(0.01));
+    CHECK_FALSE(gripper.node.last<bool>("holds"));
 }
 
 TEST_CASE("a gripper holds while a value that its motors depend on is overdue") {
