@@ -180,8 +180,12 @@ double SurfaceProxy::held_back(double behind, double depth) noexcept {
 }
 
 const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept {
-    // Farther than any room: an input fault.
-    if (!is_finite(goal) || !(glm::length(goal) < 1e3)) return state_;
+    // Farther than any room: an input fault. The proxy waits where it is, without a force.
+    if (!is_finite(goal) || !(glm::length(goal) < 1e3)) {
+        state_.force = state_.normal = Vec3(0.0);
+        state_.in_contact = state_.sticks = false;
+        return state_;
+    }
     if (!started_) reset(goal);
     surfaces = surfaces.first(std::min(surfaces.size(), max_surfaces));
     const ProxyTexture& texture = settings.texture;

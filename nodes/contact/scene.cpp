@@ -55,12 +55,13 @@ struct Scene {
             now.count = i + 1;
             coupling::SceneObject& object = now.objects[i];
             object.body = bodies[i]->get();
+            // A pose that is not valid for a tick leaves the body where it is.
+            if (poses[i]->connected && is_valid(poses[i]->get())) put_[i] = {true, poses[i]->get()};
             if (!put_[i].is_put) {
                 const Pose& home = object.body.home;
                 object.pose = {home.position - origin + at[i],
                                glm::normalize(coupling::rotation_xyz(turn[i]) * home.orientation)};
             } else object.pose = put_[i].pose;
-            if (poses[i]->connected && is_valid(poses[i]->get())) object.pose = poses[i]->get();
         }
         if (moved.connected && which.connected && is_valid(moved.get())) {
             const double place = which.get();

@@ -81,8 +81,8 @@ struct DynamicCoupling {
         const Twist velocity =
             device_twist.connected ? device_twist.get() : velocity_from_poses(tick.elapsed_seconds());
         const coupling::DynamicState& now = solver_.update(device, velocity, seconds(tick.period), *contact_);
-        last_ = now.wrench;
-        wrench = now.wrench * hold_.strength;
+        last_ = felt_of(now);
+        wrench = last_ * hold_.strength;
         pose = now.proxy * in_hand;
         penetration = now.contact.penetration;
         in_contact = now.contact.in_contact > 0;

@@ -111,12 +111,12 @@ private:
 
     void solve(const Pose& in_hand) noexcept {
         const coupling::QuasiStaticState& now = solver_.update(device, *guided_contact_);
-        wrench = now.wrench * hold_.strength;
+        last_ = felt_of(now);
+        wrench = last_ * hold_.strength;
         pose = now.proxy * in_hand;
         penetration = now.contact.penetration;
         residual = now.residual;
         in_contact = now.contact.in_contact > 0;
-        last_ = now.wrench;
         ++ticks_;
         if (!now.is_slowed) residuals_.add(now.residual);
         deepest_ = std::max(deepest_, now.contact.penetration);

@@ -136,13 +136,13 @@ private:
         }
         const coupling::QuasiStaticState& now = solver_.update(device, *fit_);
         const double drawing = fit_->force();
-        wrench = now.wrench * hold_.strength;
+        last_ = felt_of(now);
+        wrench = last_ * hold_.strength;
         pose = now.proxy * in_hand;
         pull = drawing;
         penetration = now.contact.penetration;
         residual = now.residual;
         in_contact = now.contact.in_contact > 0;
-        last_ = now.wrench;
         if (!now.is_slowed) residuals_.add(now.residual);
         deepest_ = std::max(deepest_, now.contact.penetration);
         max_pull_ = std::max(max_pull_, drawing);

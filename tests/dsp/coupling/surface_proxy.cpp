@@ -446,6 +446,21 @@ TEST_CASE("a proxy keeps its head: no surface, nowhere, inside of a body, far ju
     CHECK(proxy.state().proxy.z == Approx(25.0 * mm).margin(0.02 * mm));
 }
 
+TEST_CASE("a proxy whose hand is nowhere gives no force, and waits where it was") {
+    const coupling::ProxySurface surface{&proxy_ball(), nullptr, {}};
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const Vec3& nowhere : {Vec3(nan, 0.0, 0.0), Vec3(0.0, 0.0, 2000.0), Vec3(0.0, 1e300, 0.0)}) {
+        coupling::SurfaceProxy proxy;
+        proxy.reset({0.0, 0.0, 30.0 * mm});
+        for (int n = 0; n < 50; ++n) proxy.update({0.0, 0.0, 22.0 * mm}, {&surface, 1});
+        const Vec3 force = proxy.state().force;
+        REQUIRE(force.z > 0.0);
+        CHECK(proxy.update(nowhere, {&surface, 1}).force == Vec3(0.0));
+        CHECK_FALSE(proxy.state().in_contact);
+        CHECK(glm::length(proxy.update({0.0, 0.0, 22.0 * mm}, {&surface, 1}).force - force) < 0.01 * force.z);
+    }
+}
+
 TEST_CASE("a proxy allocates nothing") {
     const auto surfaces = both(plate_map(), plate_triangles());
     coupling::SurfaceProxy proxy;

@@ -362,3 +362,62 @@ TEST_CASE("a body that is let go leaves no force on the hand, where nothing stat
         CHECK(glm::length(felt.back().force) == 0.0);
     }
 }
+
+TEST_CASE("a released body leaves no force on the hand where its strength is wired to something that does not fall") {
+    for (const char* type : {"quasi_static_coupling", "dynamic_coupling"}) {
+        NodeHarness node(type, test::servo);
+        node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
+        node.feed("scene", coupled_scene());
+        node.feed<Pose>("device", [](std::int64_t k) {
+            return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
+        });
+        node.feed<bool>("holding", [](std::int64_t k) { return k < 300; });
+        node.disconnect_optional().connect("holding").feed<double>("strength", 0.5).connect("strength");
+        node.prepare();
+        node.run(1400);
+        const auto felt = node.values<Wrench>("wrench");
+        CAPTURE(type);
+        CHECK(felt[299].force.z > 1.0);
+        CHECK(glm::length(felt[310].force) > 0.9 * felt[299].force.z);
+        CHECK(glm::length(felt[1301].force) == 0.0);
+        CHECK(glm::length(felt.back().force) == 0.0);
+    }
+}
+
+TEST_CASE("a coupling gives no force while the pose of its hand is none, and goes on from the last one that was") {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const char* type : {"quasi_static_coupling", "dynamic_coupling"}) {
+        NodeHarness node(type, test::servo);
+        node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
+        node.feed("scene", coupled_scene());
+        node.feed<Pose>("device", [](std::int64_t k) {
+            if (k >= 300 && k < 400) return Pose{{nan, 0.0, 0.0}, {1, 0, 0, 0}};
+            return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
+        });
+        node.disconnect_optional();
+        node.prepare();
+        node.run(500);
+        const auto felt = node.values<Wrench>("wrench");
+        CAPTURE(type);
+        REQUIRE(felt[299].force.z > 2.0);
+        for (std::size_t k = 300; k < 400; ++k) REQUIRE(glm::length(felt[k].force) == 0.0);
+        CHECK(felt.back().force.z == Approx(felt[299].force.z).epsilon(0.05));
+    }
+}
+
+TEST_CASE("a body whose pose is none for a tick stays where it was") {
+    NodeHarness node("scene", test::servo);
+    node.feed("a", coupled_scene().objects[0].body);
+    for (const char* other : {"b", "c", "d", "b_pose", "c_pose", "d_pose"}) node.disconnect(other);
+    node.feed<double>("which", -1.0).feed("moved", Pose{{0.0, 0.0, 0.0}, {1, 0, 0, 0}});
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    node.feed<Pose>("a_pose", [](std::int64_t k) {
+        return k == 50 ? Pose{{nan, 0.0, 0.0}, {1, 0, 0, 0}}
+                       : Pose{{0.1 + 1e-4 * static_cast<double>(k), 0.0, 0.0}, {1, 0, 0, 0}};
+    });
+    node.prepare();
+    node.run(60);
+    const auto scenes = node.values<coupling::Scene>("scene");
+    CHECK(scenes[50].objects[0].pose.position.x == Approx(0.1049));
+    CHECK(scenes[51].objects[0].pose.position.x == Approx(0.1051));
+}
