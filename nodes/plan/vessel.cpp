@@ -35,7 +35,9 @@ struct Vessel {
     In<Pose> hand{optional, "of the hand in the scene; open: torques are about the origin", "m"};
     In<double> held{optional, "place of the held piece; -1 or open: none"};
     In<Pose> pose{optional, "of the held piece, newer than in the scene: coupling.pose", "m"};
-    In<double> strength{optional, "share of the force that the hand feels, 0 to 1: grasp.strength; open: 1"};
+    In<double> strength{
+        optional,
+        "share of the force that the hand feels, 0 to 1: grasp.strength; open: 1, which comes and goes in 0.1 s"};
     In<Pose> site{optional, of_world, "where the end is sewn; open: 'plan_site', else 'site_at'", "m"};
     In<bool> sewn{optional, of_world, "the end is sewn to its site; false: it is free; open: true"};
     Out<Wrench> wrench{"on the hand: 'gain' times the vessel's pull on the held piece and its group; 0 of a vein",
@@ -135,13 +137,14 @@ struct Vessel {
         const int place = held_place();
         follow(place);
         const bool is_held = holds(place);
+        left_ = std::clamp(left_ + (is_held ? tick.elapsed_seconds() : -tick.elapsed_seconds()) / fade_time, 0.0, 1.0);
         if (!site.connected) last_site_ = given_site();
         else if (is_valid(site.get())) last_site_ = site->position;
         // A site that was never there is sewn to nothing.
         const bool is_wanted = last_site_ && (!sewn.connected || sewn.get());
         const Vec3 where = last_site_.value_or(given_site());
         if (!is_held && (tick.index + phase_) % idle_ticks_ != 0) {
-            wrench = Wrench{};
+            give(-1);
             if (ticks_ > 0) return;
             // The first update is pending; outputs already refer to the site.
             site_ = where;
@@ -157,7 +160,7 @@ struct Vessel {
         unsolved_ += !step.is_solved;
         ++ticks_;
         residual_ = std::max(residual_, step.residual);
-        wrench = is_held && !shape_.is_vein ? felt(place) : Wrench{};
+        give(is_held && !shape_.is_vein ? place : -1);
         site_ = where;
         publish(is_wanted);
     }
@@ -237,14 +240,20 @@ private:
         return false;
     }
 
+    /// The force on the hand that holds the piece `place`, -1: none. Where nothing specifies the strength, it fades in and out.
+    void give(int place) noexcept {
+        if (place >= 0) last_ = felt(place);
+        else if (strength.connected || left_ == 0.0) last_ = {};
+        wrench = last_ * (strength.connected ? std::clamp(strength.get(), 0.0, 1.0) : left_);
+    }
+
     Wrench felt(int place) noexcept {
         if (hand.connected && !is_valid(hand.get())) return {};
         const Vec3 origin = hand.connected ? hand->position : Vec3(0.0);
         Wrench pull;
         for (std::size_t n = 0; n < poses_.size() && n < scene->count; ++n)
             if (moves_with(place, n)) pull = pull + vessel_->pull_on(static_cast<int>(n), origin);
-        const double share = strength.connected ? std::clamp(strength.get(), 0.0, 1.0) : 1.0;
-        pull = pull * (gain.value * share);
+        pull = pull * gain.value;
         const double size = glm::length(pull.force);
         if (size > max_force) pull = pull * (max_force / size);
         greatest_felt_ = std::max(greatest_felt_, std::min(size, max_force.value));
@@ -286,6 +295,9 @@ private:
     Vec3 site_{0.0};
     std::optional<Vec3> last_site_, plan_site_;
     std::int64_t idle_ticks_ = 1, phase_ = 0;
+    static constexpr double fade_time = 0.1;  // s
+    double left_ = 0.0;  // of the fade where nothing specifies the strength
+    Wrench last_;  // of the held piece
     double waited_ = 0.0, greatest_ = 0.0, greatest_felt_ = 0.0, residual_ = 0.0;
     std::uint64_t ticks_ = 0, unsolved_ = 0;
 };

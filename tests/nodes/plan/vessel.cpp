@@ -107,6 +107,21 @@ TEST_CASE("the pull acts where the vessel leaves the bone, fades with the grip, 
     }
 }
 
+TEST_CASE("the pull comes and goes without a step where nothing states the strength") {
+    VesselRig rig;
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright});
+    rig.node.feed<double>("held", [](std::int64_t k) { return k >= 500 && k < 1500 ? 2.0 : -1.0; });
+    rig.node.prepare();
+    rig.node.run(1800);
+    const auto felt = rig.node.values<Wrench>("wrench");
+    const double most = glm::length(felt[1499].force);
+    REQUIRE(most > 0.5);
+    double step = 0.0;
+    for (std::size_t k = 1; k < felt.size(); ++k) step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
+    CHECK(step < 0.03 * most);
+    CHECK(glm::length(felt[1601].force) == 0.0);
+}
+
 TEST_CASE("a vein gives its reach and no newtons") {
     VesselRig rig;
     rig.node.set("kind", "vein");
