@@ -438,18 +438,32 @@ void SlotHold::let_go() noexcept {
     offset_ = Vec3(0.0);
     touch_count_ = 0;
     spring_ = {};
+    rest_.reset();
 }
 
 /// The walls stay where they were, and their springs weaken: no energy comes of it. The force grows no further. The blade goes
 /// over to the hand.
 void SlotHold::release(const Pose& hand, double dt) noexcept {
     const double after = left_ - dt;
-    hand_ = placed(walls_.frame, hand);
-    if (!is_placed(hand_.pose) || !(after > 1e-9)) {
+    if (!(after > 1e-9)) {
         let_go();
         guided_ = hand;
         return;
     }
+    const Placement at = placed(walls_.frame, hand);
+    // A plane that has no slopes meets no walls; what they gave last goes on fading.
+    if (rest_ || !is_placed(at.pose)) {
+        if (!rest_) {
+            const Vec3 arm = hand_.clamp - hand_.pose.position;
+            rest_ = Wrench{walls_.frame.orientation * spring_.force,
+                           walls_.frame.orientation * (spring_.torque + glm::cross(arm, spring_.force))};
+        }
+        rest_ = *rest_ * (after / left_);
+        left_ = after;
+        guided_ = hand;
+        return;
+    }
+    hand_ = at;
     share_ *= after / left_;
     left_ = after;
     const double kept = left_ / fade_time;
@@ -470,6 +484,7 @@ double SlotHold::force() const noexcept { return settings_.stiffness * std::min(
 
 Wrench SlotHold::on_hand(const Wrench& on_blade) const noexcept {
     if (slot_ < 0 && !(left_ > 0.0)) return on_blade;
+    if (rest_) return on_blade + *rest_;
     const Pose blade = walls_.frame.inverse() * guided_;
     const Quat back = glm::conjugate(walls_.frame.orientation);
     Vec3 force = back * on_blade.force;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace tactus::saw {
@@ -145,6 +146,7 @@ private:
     Placement hand_;
     Vec3 offset_{0.0};  // of the guided plane from that of the hand
     Wrench spring_;  // on the hand about the clamp, frame of the slot
+    std::optional<Wrench> rest_;  // on the hand, of a released blade that is turned across its slot
     std::array<Touch, max_touches> touches_{};
     std::size_t touch_count_ = 0;
 };

@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 using namespace tactus;
@@ -824,8 +825,7 @@ TEST_CASE("a wedged blade that is released while the hand moves loses its force 
                 if (is_released && since == 0) still = before, released_at = felt;
                 if (is_released && ++since <= 3) {
                     still.follow(slots, hand, 1e-3);
-                    const double least =
-                        std::min(glm::length(still.on_hand({}).force), glm::length(released_at.force));
+                    const double least = std::min(glm::length(still.on_hand({}).force), glm::length(released_at.force));
                     if (still.slot() == 0) dropped = std::max(dropped, 0.9 * least - glm::length(now.force));
                 }
                 // The same motion in 16 ticks of a 16th: what is no step becomes small, but for the fade.
@@ -850,6 +850,42 @@ TEST_CASE("a wedged blade that is released while the hand moves loses its force 
             CHECK(glm::length(felt.force) == 0.0);
         }
     CHECK(wedged > 20);
+}
+
+TEST_CASE("a released blade that the hand turns across its slot loses force and torque without a step") {
+    const saw::SawShape shape = guided_blade();
+    const std::vector<saw::GuideSlot> slots{slot_above()};
+    saw::SlotHold hold(shape, {.stiffness = 10e3, .thickness = kerf});
+    const auto hand_at = [&](double degrees) {
+        const double half = 0.5 * degrees * std::numbers::pi / 180.0;
+        Pose hand{Vec3(0.0), teeth_down};
+        hand.orientation = glm::normalize(hand.orientation * Quat(std::cos(half), std::sin(half), 0.0, 0.0));
+        return hand;
+    };
+    // 300 degrees/s, through the tilt at which the slot releases it and on across its plane.
+    Wrench felt;
+    double most = 0.0, jump = 0.0;
+    for (int n = 0; n <= 400; ++n) {
+        const saw::SlotHold before = hold;
+        hold.follow(slots, hand_at(std::min(0.3 * n, 95.0)), 1e-3);
+        const Wrench now = hold.on_hand({});
+        REQUIRE(is_finite(now));
+        most = std::max(most, glm::length(now.torque));
+        if (glm::length(now.torque - felt.torque) > 0.02 * most) {
+            saw::SlotHold fine = before;
+            Wrench was = felt;
+            for (int k = 1; k <= 16; ++k) {
+                fine.follow(slots, hand_at(std::min(0.3 * (n - 1 + k / 16.0), 95.0)), 1e-3 / 16.0);
+                const Wrench step = fine.on_hand({});
+                jump = std::max(jump, glm::length(step.torque - was.torque));
+                was = step;
+            }
+        }
+        felt = now;
+    }
+    CHECK(most > 0.5);
+    CHECK(jump < 0.02 * most);
+    CHECK(glm::length(felt.force) + glm::length(felt.torque) == 0.0);
 }
 
 TEST_CASE("a running blade that misses the slot stops at the guide, and is free above it") {
