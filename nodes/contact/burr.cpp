@@ -71,11 +71,10 @@ struct Burr {
     }
 
     void process(const Tick& tick) noexcept {
-        const double elapsed = tick.elapsed_seconds();
         const saw::Drive drive{
             .running = !running.connected || running.get(),
             .rate = turn_rate,
-            .dt = std::clamp(elapsed, seconds(tick.period), 0.05),
+            .dt = step_of(tick),
             .rendered = rendered_share(asked, applied),
             .release = pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get())};
         const saw::BurrContact now = burr_->step(bone.get(), pose.get(), drive, law_);

@@ -153,11 +153,10 @@ struct SawBlade {
     }
 
     void process(const Tick& tick) noexcept {
-        const double elapsed = tick.elapsed_seconds();
         const saw::Drive drive{
             .running = !running.connected || running.get(),
             .rate = strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(stroke_rate),
-            .dt = std::clamp(elapsed, seconds(tick.period), 0.05),
+            .dt = step_of(tick),
             .rendered = rendered_share(asked, applied),
             .release =
                 pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get()) || !is_seated()};

@@ -27,6 +27,12 @@ inline double rendered_share(const In<Wrench>& asked, const In<Wrench>& applied)
     return share > 1.0 - rounding ? 1.0 : std::max(share, 0.0);
 }
 
+/// Time that a tool cuts in a tick, s: after skipped ticks at most 0.05 s, unless a period is longer.
+inline double step_of(const Tick& tick) noexcept {
+    const double period = seconds(tick.period);
+    return std::clamp(tick.elapsed_seconds(), period, std::max(period, 0.05));
+}
+
 /// After a pause of more than 100 ms and three ticks, a tick does not continue the previous motion if the tool was
 /// moved meanwhile.
 class PauseWatch {

@@ -206,3 +206,22 @@ TEST_CASE("the input 'release' frees a tool over 100 ms") {
         CHECK(force.back().force == Vec3(0.0));
     }
 }
+
+TEST_CASE("a tool in a slow group counts and cuts for the whole of each period") {
+    for (const char* type : {"saw_blade", "burr"}) {
+        const auto seconds_at = [type](int rate) {
+            const auto bone = bone_block({.voxel = 0.5e-3});
+            NodeHarness node(type, {.period = flicks_per_second / rate});
+            node.disconnect_optional();
+            node.feed<Pose>("pose", [rate](std::int64_t k) { return press(k * 1000 / rate); });
+            node.feed("bone", bone->current());
+            node.prepare();
+            node.run(3 * rate);
+            return *node.report().number("contact", "seconds");
+        };
+        const double slow = seconds_at(10), quick = seconds_at(20);
+        CAPTURE(type, slow, quick);
+        CHECK(quick > 0.5);
+        CHECK(slow == Approx(quick).margin(0.25));
+    }
+}
