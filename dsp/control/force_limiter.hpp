@@ -5,6 +5,7 @@
 #include "dsp/core/types.hpp"
 
 #include <cstdint>
+#include <limits>
 
 namespace tactus::control {
 
@@ -114,7 +115,8 @@ private:
     ForceLimits limits_;
     double period_s_ = 0.001;
     Wrench output_, raw_, fade_from_;
-    double faded_s_ = 0.0, ramped_s_ = 0.0, slow_ramp_s_ = 0.0;
+    double faded_s_ = std::numeric_limits<double>::infinity();  ///< since the last fade began
+    double ramped_s_ = 0.0, slow_ramp_s_ = 0.0;
     std::int64_t counter_ = 0;
     int still_ticks_ = 0, small_ticks_ = 0;
     bool has_counter_ = false, held_off_ = false;

@@ -142,6 +142,33 @@ TEST_CASE("every fault fades to zero within 10 ms, says why, and latches until r
     CHECK(rig.within_limits());
 }
 
+TEST_CASE("a fade takes 10 ms, however soon the fault is over and however slow the slew is") {
+    control::ForceLimits limits;
+    limits.force_slew = 10.0;  // N/s
+    for (const int faulty_ticks : {1, 2, 5}) {
+        Rig rig(limits);
+        rig.engage();
+        rig.run({{0.0, 0.0, 3.0}, {}}, 1000);
+        REQUIRE(rig.out.force.z == Approx(3.0));
+        rig.run({{0.0, 0.0, 3.0}, {}}, faulty_ticks, true, false);
+        rig.limiter.recover();
+        rig.run({{0.0, 0.0, 3.0}, {}}, 10 - faulty_ticks);
+        CHECK(rig.out.force.z == Approx(0.0).margin(1e-9));
+        rig.run({}, 200);
+        rig.run({{0.0, 0.0, 3.0}, {}}, 1000);
+        CHECK(rig.out.force.z == Approx(3.0));
+    }
+    // Held off for a moment: the same.
+    Rig rig(limits);
+    rig.engage();
+    rig.run({{0.0, 0.0, 3.0}, {}}, 1000);
+    rig.limiter.hold_off(true);
+    rig.run({{0.0, 0.0, 3.0}, {}}, 2);
+    rig.limiter.hold_off(false);
+    rig.run({{0.0, 0.0, 3.0}, {}}, 8);
+    CHECK(rig.out.force.z == Approx(0.0).margin(1e-9));
+}
+
 TEST_CASE("a fault that names a cause replaces a late tick and no other fault: only what is not finite replaces all") {
     for (const control::Fault cause : {control::Fault::sound_lost, control::Fault::stale_input}) {
         Rig rig;
