@@ -9,11 +9,13 @@
 #include "dsp/core/time.hpp"
 #include "graph/node/device.hpp"
 
+#include <algorithm>
 #include <any>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -142,6 +144,25 @@ struct Report {
 
     void set(const std::string& section, const std::string& key, Value value) {
         sections[section][key] = std::move(value);
+    }
+    /// Sections that several nodes share: the larger of the values; their sum; the first text that is not `nothing`.
+    void raise(const std::string& section, const std::string& key, double value) {
+        set(section, key, std::max(value, number(section, key).value_or(value)));
+    }
+    void add(const std::string& section, const std::string& key, double value) {
+        set(section, key, value + number(section, key).value_or(0.0));
+    }
+    void set_unless(const std::string& nothing, const std::string& section, const std::string& key, std::string text) {
+        const auto& values = sections[section];
+        const auto found = values.find(key);
+        if (found == values.end() || std::get<std::string>(found->second) == nothing)
+            set(section, key, std::move(text));
+    }
+    std::optional<double> number(const std::string& section, const std::string& key) const {
+        const auto values = sections.find(section);
+        if (values == sections.end()) return std::nullopt;
+        const auto found = values->second.find(key);
+        return found == values->second.end() ? std::nullopt : std::optional(std::get<double>(found->second));
     }
 };
 

@@ -88,40 +88,42 @@ struct DeviceOutput {
         note_felt(tick, force);
     }
 
+    /// The section of all hands together: largest forces, sums of counts, the first fault.
     void report(Report& report) const {
         const control::ForceStatistics& s = limiter_.statistics();
         const auto ticks = static_cast<double>(s.ticks);
-        report.set("force", "max_N", largest_);
-        report.set("force", "mean_N", s.ticks > 0 ? sum_ / ticks : 0.0);
-        report.set("force", "ticks", ticks);
+        const double sum =
+            sum_ + report.number("force", "mean_N").value_or(0.0) * report.number("force", "ticks").value_or(0.0);
+        report.raise("force", "max_N", largest_);
+        report.add("force", "ticks", ticks);
+        const double all = *report.number("force", "ticks");
+        report.set("force", "mean_N", all > 0.0 ? sum / all : 0.0);
         tell_felt(report);
-        report.set("force", "raw_max_N", s.max_force);
-        report.set("force", "raw_max_step_N", s.max_force_step);
-        report.set("force", "over_limit_ticks", static_cast<double>(s.force_limited));
-        report.set("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
-        report.set("contact", "limited_ticks", static_cast<double>(s.limited));
+        report.raise("force", "raw_max_N", s.max_force);
+        report.raise("force", "raw_max_step_N", s.max_force_step);
+        report.add("force", "over_limit_ticks", static_cast<double>(s.force_limited));
+        report.add("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
+        report.add("contact", "limited_ticks", static_cast<double>(s.limited));
         if (!port_->info.actuates_torque) {
-            report.set("force", "torque_dropped_max_Nm", max_dropped_);
-            report.set("force", "torque_dropped_ticks", static_cast<double>(ticks_dropped_));
+            report.raise("force", "torque_dropped_max_Nm", max_dropped_);
+            report.add("force", "torque_dropped_ticks", static_cast<double>(ticks_dropped_));
         }
         const control::EnergyCapStatistics& e = cap_.statistics();
-        report.set("force", "energy_cap",
-                   std::string(port_->info.without_motors ? "not needed"
-                               : energy_cap               ? "on"
-                                                          : "off"));
-        report.set("force", "energy_capped_ticks", static_cast<double>(capped_ticks_));
-        report.set("force", "energy_capped_max_N", max_capped_);
-        report.set("force", "energy_stored_max_J", e.max_stored);
-        report.set("force", "energy_returned_max_J", e.max_returned);
-        report.set("force", "granted_power_max_W", max_granted_);
-        report.set("force", "granted_J", e.granted);
-        report.set("force", "engaged_ticks", static_cast<double>(engaged_ticks_));
+        if (!port_->info.without_motors && !energy_cap) report.set("force", "energy_cap", std::string("off"));
+        else report.set_unless("not needed", "force", "energy_cap", port_->info.without_motors ? "not needed" : "on");
+        report.add("force", "energy_capped_ticks", static_cast<double>(capped_ticks_));
+        report.raise("force", "energy_capped_max_N", max_capped_);
+        report.raise("force", "energy_stored_max_J", e.max_stored);
+        report.raise("force", "energy_returned_max_J", e.max_returned);
+        report.raise("force", "granted_power_max_W", max_granted_);
+        report.add("force", "granted_J", e.granted);
+        report.add("force", "engaged_ticks", static_cast<double>(engaged_ticks_));
         // Forces engage only after the patch has requested almost zero force.
         if (engaged_ticks_ == 0 && faults_ == 0 && s.max_force >= control::ForceLimits{}.engage_force)
             report.set("forces_never_engaged", name_, s.max_force);
-        report.set("force", "fault", std::string(control::describe(last_fault_)));
-        report.set("force", "faults", static_cast<double>(faults_));
-        report.set("force", "returns_after_late_ticks", static_cast<double>(returns_));
+        report.set_unless(control::describe(control::Fault::none), "force", "fault", control::describe(last_fault_));
+        report.add("force", "faults", static_cast<double>(faults_));
+        report.add("force", "returns_after_late_ticks", static_cast<double>(returns_));
     }
 
 private:

@@ -347,8 +347,7 @@ std::uint64_t NodeHarness::output_hash() const {
     return all.value();
 }
 
-Report NodeHarness::report() const {
-    Report report;
+Report NodeHarness::report(Report report) const {
     type_.report(node_, report);
     return report;
 }

@@ -134,7 +134,8 @@ public:
     /// Empties what `values`, `output_hash` and `finite` look at.
     void forget();
     void feed_with(Feed feed) { options_.feed = feed; }
-    Report report() const;
+    /// What the node adds to the report of others.
+    Report report(Report report = {}) const;
 
     bool takes_blocks() const { return takes_blocks_; }
     /// What an input of several types takes; 0: there is none.

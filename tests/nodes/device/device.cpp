@@ -126,6 +126,34 @@ TEST_CASE("device_output bounds what reaches the hand and tells what it was aske
     CHECK(number_of(report, "force", "over_limit_ticks") == 400.0);
 }
 
+TEST_CASE("the report of two hands has the larger force, the sum of counts and the fault of either") {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto report_of = [&](double force, bool fails, Report before) {
+        NodeHarness node("device_output", test::servo);
+        node.set("energy_cap", fails ? "true" : "false");
+        node.device_feed = [](std::int64_t k, DevicePort& port) { port.sample = sample_at(0.0, k); };
+        node.feed<Wrench>("wrench", [=](std::int64_t k) {
+            return k < 300 ? Wrench{} : Wrench{{fails && k >= 900 ? nan : force, 0.0, 0.0}, {}};
+        });
+        node.prepare();
+        node.run(1000);
+        return node.report(std::move(before));
+    };
+    for (const bool first_fails : {true, false}) {
+        const Report one = report_of(first_fails ? 4.0 : 1.0, first_fails, {});
+        const Report both = report_of(first_fails ? 1.0 : 4.0, !first_fails, one);
+        CHECK(number_of(both, "force", "max_N") == Approx(4.0));
+        CHECK(number_of(both, "force", "faults") == 1.0);
+        CHECK(number_of(both, "force", "ticks") == 2000.0);
+        const Report alone = report_of(first_fails ? 1.0 : 4.0, !first_fails, {});
+        CHECK(number_of(both, "force", "mean_N") ==
+              Approx(0.5 * (number_of(one, "force", "mean_N") + number_of(alone, "force", "mean_N"))));
+        const auto text = [&](const char* key) { return std::get<std::string>(both.sections.at("force").at(key)); };
+        CHECK(text("fault") == control::describe(control::Fault::not_finite));
+        CHECK(text("energy_cap") == "off");
+    }
+}
+
 TEST_CASE("device_output takes the device's own limit when that is lower") {
     NodeHarness node("device_output", test::servo);
     node.host.device("", DeviceUse::read, {}).info.max_force = 3.0;
