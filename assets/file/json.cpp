@@ -207,7 +207,10 @@ Json Json::parse_or_null(std::string_view text) {
     }
 }
 
-std::string Json::dump(int indent) const { return library_value(*this).dump(indent); }
+std::string Json::dump(int indent) const {
+    // A name that a device or a file gives may be no UTF-8: its bytes are replaced, and the text stays JSON.
+    return library_value(*this).dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 bool Json::is_null() const { return std::holds_alternative<std::nullptr_t>(value_); }
 bool Json::is_boolean() const { return std::holds_alternative<bool>(value_); }
