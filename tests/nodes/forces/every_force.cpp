@@ -44,12 +44,9 @@ TEST_CASE("every force that a node makes is continuous, passive on closed paths 
 
 TEST_CASE("settings of the bench at which a force once jumped stay continuous", "[slow]") {
     const std::map<std::string_view, std::vector<std::uint64_t>> once{
-        {"held_weight", {139}},
-        {"path_guide", {113, 266}},
-        {"point_proxy", {24, 52, 53}},
-        {"saw_blade", {38, 54, 70, 132, 193}},
-        {"sphere_contact", {100}},
-        {"sphere_proxy", {40, 41, 52}},
+        {"held_weight", {139}},        {"path_guide", {113, 266}},
+        {"point_proxy", {24, 52, 53}}, {"saw_blade", {38, 54, 70, 132, 193}},
+        {"sphere_contact", {100}},     {"sphere_proxy", {40, 41, 52}},
         {"wrench_sum", {168}},
     };
     for (const NodeType* type : force_types()) {
