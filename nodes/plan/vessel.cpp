@@ -19,6 +19,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::nodes {
@@ -80,6 +81,7 @@ struct Vessel {
 
     void prepare(const Setup& setup) {
         name_ = setup.name;
+        is_new_ = true;
         std::vector<std::vector<Vec3>> surfaces(plan->bones.size());
         const plan::PlanState state = plan::state_of(plan->plan);
         bool is_any = false;
@@ -137,7 +139,9 @@ struct Vessel {
         const int place = held_place();
         follow(place);
         const bool is_held = holds(place);
-        left_ = std::clamp(left_ + (is_held ? tick.elapsed_seconds() : -tick.elapsed_seconds()) / fade_time, 0.0, 1.0);
+        // A piece that is held from the start was not grasped: what follows is one closed law.
+        const double part = std::exchange(is_new_, false) ? 1.0 : tick.elapsed_seconds() / fade_time;
+        left_ = is_held ? std::min(left_ + part, 1.0) : std::max(left_ - part, 0.0);
         if (!site.connected) last_site_ = given_site();
         else if (is_valid(site.get())) last_site_ = site->position;
         // A site that was never there is sewn to nothing.
@@ -296,6 +300,7 @@ private:
     std::optional<Vec3> last_site_, plan_site_;
     std::int64_t idle_ticks_ = 1, phase_ = 0;
     static constexpr double fade_time = 0.1;  // s
+    bool is_new_ = true;
     double left_ = 0.0;  // of the fade where nothing specifies the strength
     Wrench last_;  // of the held piece
     double waited_ = 0.0, greatest_ = 0.0, greatest_felt_ = 0.0, residual_ = 0.0;
