@@ -62,7 +62,7 @@ bool is_painted(std::span<const contact::SurfacePoint> points) {
 
 ResultKey key_of_points(const std::filesystem::path& path) {
     // To be raised with every change of code that changes which points a file gives: import, sampling.
-    constexpr int points_sampling = 2;
+    constexpr int points_sampling = 3;
     ResultKey key("points of a fragment", points_sampling);
     key.add_file(path);
     return key;

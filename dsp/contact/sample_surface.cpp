@@ -23,6 +23,7 @@ namespace {
 
 constexpr double min_distance = 0.77;  // of the spacing; leaves about one point per spacing²
 constexpr double candidates_per_point = 10.0;
+constexpr std::size_t first_batch = 4096;
 constexpr double finest = 1.0 / 3.0;  // of the spacing, at high curvature
 // Points whose normals differ by more than this lie on different sides of an edge or of a thin wall.
 constexpr double same_side = -0.3;
@@ -158,11 +159,7 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     geometry::GrowingCubes cubes(count / 8, sampling.spacing);
     std::vector<std::uint32_t> kept;
     const double widest = min_distance * sampling.spacing;
-    for (std::size_t n = 0; n < count; ++n) {
-        // The order is random, so each candidate and what is near it would come from far away in memory.
-        if (n + 32 < count) __builtin_prefetch(&all.position[order[n + 32]]);
-        if (n + 16 < count) cubes.prefetch(all.position[order[n + 16]]);
-        const std::uint32_t c = order[n];
+    const auto is_free = [&](std::uint32_t c) {
         bool free = true;
         cubes.around(all.position[c], widest, [&](std::uint32_t k, double d2) {
             if (sampling.follow_curvature) {
@@ -172,12 +169,30 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
             free = !(d2 < widest * widest) || glm::dot(all.normal[c], all.normal[kept[k]]) < same_side;
             return free;
         });
-        if (!free) continue;
-        if (kept.size() == sampling.max_points)
-            throw Error(fmt::format("a spacing of {:.4g} mm gives more than {} points; take a larger one",
-                                    1e3 * sampling.spacing, sampling.max_points));
-        cubes.add(all.position[c]);
-        kept.push_back(c);
+        return free;
+    };
+    // Jobs reject the candidates that earlier batches exclude, in the order of the surface, which is that of memory: nearly
+    // all of most batches. What is left is decided in random order. Batches grow with the accepted points, so that few
+    // candidates of one exclude each other.
+    std::vector<std::uint8_t> is_excluded(count, 0);
+    std::vector<std::uint32_t> batch;
+    for (std::size_t begin = 0; begin < count; begin += batch.size()) {
+        const std::size_t end = std::min(count, begin + std::max(first_batch, kept.size()));
+        batch.assign(order.begin() + static_cast<std::ptrdiff_t>(begin),
+                     order.begin() + static_cast<std::ptrdiff_t>(end));
+        std::ranges::sort(batch);
+        in_parts(batch.size(), run, [&](std::size_t first, std::size_t last) {
+            for (std::size_t n = first; n < last; ++n) is_excluded[batch[n]] = !is_free(batch[n]);
+        });
+        for (std::size_t n = begin; n < end; ++n) {
+            const std::uint32_t c = order[n];
+            if (is_excluded[c] || !is_free(c)) continue;
+            if (kept.size() == sampling.max_points)
+                throw Error(fmt::format("a spacing of {:.4g} mm gives more than {} points; take a larger one",
+                                        1e3 * sampling.spacing, sampling.max_points));
+            cubes.add(all.position[c]);
+            kept.push_back(c);
+        }
     }
     std::vector<SurfacePoint> points;
     for (const std::uint32_t c : kept) points.push_back({all.position[c], all.normal[c], 0.0, surface_label::none});
@@ -197,13 +212,13 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
             owners.around(all.position[i], block);
             const auto apart2 = owners.apart2(all.position[i], block);
             for (std::size_t s = 0; s < block.slots.size(); ++s) {
-            // A little more, so that rounding leaves out nothing.
+                // A little more, so that rounding leaves out nothing.
                 if (apart2[s] > 1.001 * nearest) continue;
                 for (const auto& point : owners.in(block.slots[s])) {
                     const Vec3 apart = point.place - all.position[i];
                     const double d2 = glm::dot(apart, apart);
                     if (!(d2 <= radius2)) continue;
-                // Ties go to the lower index, for any order of visits.
+                    // Ties go to the lower index, for any order of visits.
                     const bool better = d2 < nearest || (d2 == nearest && point.index < owner);
                     if (better && glm::dot(all.normal[i], point.normal) >= same_side) nearest = d2, owner = point.index;
                 }

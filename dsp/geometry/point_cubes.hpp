@@ -58,14 +58,6 @@ public:
         head_[slot] = static_cast<std::uint32_t>(points_.size() - 1);
     }
 
-    /// Prefetches the slots around a position that will be queried soon.
-    void prefetch(const Vec3& p) const {
-        const auto [x, y, z] = table_.cell(p);
-        const std::int64_t bx = table_.beside(p.x, x), by = table_.beside(p.y, y), bz = table_.beside(p.z, z);
-        for (int n = 0; n < 8; ++n)
-            __builtin_prefetch(&head_[table_.slot({x + (n & 1 ? bx : 0), y + (n & 2 ? by : 0), z + (n & 4 ? bz : 0)})]);
-    }
-
     /// Calls visit(index, distance²) for all points within `radius`; stops when it returns false. A point is visited
     /// twice if two cubes have the same slot.
     template <class Visit>

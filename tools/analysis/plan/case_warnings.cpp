@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 using file::Json;
 
 // To be raised with every change of code that changes measured warnings: reach, clearances, overlaps, their words.
-constexpr int warnings_algorithm = 1;
+constexpr int warnings_algorithm = 2;
 
 constexpr double max_accepted_gap = 3.0 * mm;  // farther apart, no surfaces face each other (plan_gaps)
 

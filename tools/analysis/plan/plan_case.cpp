@@ -2,12 +2,14 @@
 #include "tools/analysis/plan/plan_case.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/core/stop.hpp"
 #include "tools/analysis/workers.hpp"
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,15 +23,37 @@ CaseFragment load_fragment(const plan::PlanFragment& fragment, const std::filesy
     return loaded;
 }
 
+std::vector<CaseFragment> load_each(std::span<const plan::PlanFragment> fragments, const std::filesystem::path& folder,
+                                    plan::Paint paint, const std::function<void(std::size_t)>& loaded) {
+    std::vector<CaseFragment> all(fragments.size());
+    std::vector<std::exception_ptr> failures(fragments.size());
+    std::mutex counting;
+    std::size_t count = 0;
+    std::atomic<bool> has_failed = false;
+    on_threads(2)(static_cast<int>(fragments.size()), [&](int job) {
+        const auto n = static_cast<std::size_t>(job);
+        // Jobs start in order: the first that fails is always tried.
+        if (has_failed) return;
+        try {
+            all[n] = load_fragment(fragments[n], folder, paint);
+        } catch (...) {
+            failures[n] = std::current_exception();
+            has_failed = true;
+            return;
+        }
+        const std::lock_guard lock(counting);
+        ++count;
+        if (loaded) loaded(count);
+    });
+    for (const std::exception_ptr& failure : failures)
+        if (failure) std::rethrow_exception(failure);
+    return all;
+}
+
 std::vector<CaseFragment> load_fragments(const plan::CasePlan& plan, const std::filesystem::path& folder,
                                          plan::Paint paint) {
     plan::check_files(plan, folder);
-    std::vector<CaseFragment> all;
-    for (const plan::PlanFragment& fragment : plan::fragments_of(plan)) {
-        leave_if_stopped();
-        all.push_back(load_fragment(fragment, folder, paint));
-    }
-    return all;
+    return load_each(plan::fragments_of(plan), folder, paint);
 }
 
 fit::PlacedBone placed_bone(const CaseFragment& fragment, const Pose& pose) {

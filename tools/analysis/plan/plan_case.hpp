@@ -9,7 +9,10 @@
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/fit/overlap.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <vector>
 
 namespace tactus::analysis {
@@ -23,6 +26,11 @@ struct CaseFragment : plan::FragmentBone {
 /// Loads a fragment. Throws Error naming the fragment.
 CaseFragment load_fragment(const plan::PlanFragment& fragment, const std::filesystem::path& folder,
                            plan::Paint paint = plan::Paint::as_filed);
+/// Loads several fragments, two at a time, because parts of loading use one thread only. Calls `loaded` with the number of
+/// those that are loaded, one call at a time. Throws Error naming the first that cannot be loaded.
+std::vector<CaseFragment> load_each(std::span<const plan::PlanFragment> fragments, const std::filesystem::path& folder,
+                                    plan::Paint paint = plan::Paint::as_filed,
+                                    const std::function<void(std::size_t)>& loaded = {});
 /// Loads all fragments of a plan. Throws Error for the first file that is missing or has changed.
 std::vector<CaseFragment> load_fragments(const plan::CasePlan& plan, const std::filesystem::path& folder,
                                          plan::Paint paint = plan::Paint::as_filed);

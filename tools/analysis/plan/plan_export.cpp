@@ -62,7 +62,6 @@ ExportedPlan export_plan(const plan::CasePlan& plan, const std::filesystem::path
     const std::vector<plan::PlanFragment> fragments = plan::fragments_of(plan, state);
     ExportedPlan exported;
     std::vector<std::string> names;
-    std::vector<CaseFragment> loaded;
     std::vector<std::size_t> shown;
     for (std::size_t n = 0; n < fragments.size(); ++n) {
         if (state.arrangement.is_hidden(static_cast<int>(n))) {
@@ -76,7 +75,9 @@ ExportedPlan export_plan(const plan::CasePlan& plan, const std::filesystem::path
         shown.push_back(n);
     }
     if (shown.empty()) throw Error("no fragment is shown; show some with 'tactus plan unhide'");
-    for (const std::size_t n : shown) loaded.push_back(load_fragment(fragments[n], folder));
+    std::vector<plan::PlanFragment> of_shown;
+    for (const std::size_t n : shown) of_shown.push_back(fragments[n]);
+    const std::vector<CaseFragment> loaded = load_each(of_shown, folder);
     run::make_output_folder(out);
     std::vector<ExportedFragment>& written = exported.written;
     for (std::size_t k = 0; k < shown.size(); ++k) {

@@ -21,7 +21,7 @@ namespace {
 
 // To be raised with every change of code that changes a registration: dsp/fit/registration, dsp/fit/gap.cpp,
 // sampling and import of what is registered.
-constexpr int mirror_algorithm = 5;
+constexpr int mirror_algorithm = 6;
 
 // m: of surfaces that only a registration uses; it takes some thousand points, and distances are from their planes.
 constexpr double registered_spacing = 1e-3;

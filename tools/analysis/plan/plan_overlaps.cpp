@@ -21,7 +21,7 @@ namespace tactus::analysis {
 namespace {
 
 // To be raised with every change of code that changes what lies in what: import of meshes, sampling, dsp/fit/overlap.
-constexpr int overlap_algorithm = 2;
+constexpr int overlap_algorithm = 3;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 

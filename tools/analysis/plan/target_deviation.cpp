@@ -29,7 +29,7 @@ geometry::TriangleSurface target_surface(const std::filesystem::path& file) {
 }
 
 // To be raised with every change of code that changes a deviation.
-constexpr int deviation_algorithm = 1;
+constexpr int deviation_algorithm = 2;
 constexpr std::size_t numbers_per_segment = 8;
 
 /// All that a deviation depends on.

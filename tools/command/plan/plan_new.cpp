@@ -32,20 +32,19 @@ void check_is_new(const plan::CasePlan& plan) {
                                     other.name));
 }
 
-/// Throws Error when the last fragment is an earlier one in another file.
-void check_is_elsewhere(const plan::CasePlan& plan, const std::vector<analysis::CaseFragment>& loaded) {
-    const fit::PlacedBone last = analysis::placed_bone(loaded.back(), {});
-    for (std::size_t n = 0; n + 1 < loaded.size(); ++n)
-        if (fit::are_one_bone(last, analysis::placed_bone(loaded[n], {})))
-            throw Error(
-                fmt::format("{}: has the shape and the place of fragment '{}', as the same bone in another "
-                            "file; name each bone once",
-                            plan.fragments.back().file, plan.fragments[n].name));
+/// Throws Error when a fragment is an earlier one in another file.
+void check_are_different(const plan::CasePlan& plan, const std::vector<analysis::CaseFragment>& loaded) {
+    for (std::size_t m = 1; m < loaded.size(); ++m)
+        for (std::size_t n = 0; n < m; ++n)
+            if (fit::are_one_bone(analysis::placed_bone(loaded[m], {}), analysis::placed_bone(loaded[n], {})))
+                throw Error(
+                    fmt::format("{}: has the shape and the place of fragment '{}', as the same bone in another "
+                                "file; name each bone once",
+                                plan.fragments[m].file, plan.fragments[n].name));
 }
 
 /// "NAME=FILE" or "FILE"; the default name is the stem of the file, or the name of the bone in it.
-void add_file_of(plan::CasePlan& plan, std::vector<analysis::CaseFragment>& loaded, const std::string& text,
-                 const fs::path& folder) {
+void add_file_of(plan::CasePlan& plan, const std::string& text, const fs::path& folder) {
     const auto equals = text.find('=');
     const bool is_named = equals != std::string::npos && !fs::exists(text);
     const std::string name = is_named ? text.substr(0, equals) : "";
@@ -69,9 +68,6 @@ void add_file_of(plan::CasePlan& plan, std::vector<analysis::CaseFragment>& load
         plan::add_fragment(plan, is_named ? name : own, path, folder,
                            bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
         check_is_new(plan);
-        // Loads every file now, so that wrong units, open surfaces and damaged files are reported before the session.
-        loaded.push_back(analysis::load_fragment(plan.fragments.back(), folder));
-        check_is_elsewhere(plan, loaded);
     }
 }
 
@@ -81,12 +77,15 @@ int make_plan(const NewChoice& choice) {
     const plan::PlanLock lock(choice.plan);
     plan::CasePlan plan;
     plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
-    std::vector<analysis::CaseFragment> loaded;
+    const fs::path folder = choice.plan.parent_path();
+    for (const std::string& name : choice.names) add_file_of(plan, name, folder);
     Progress progress;
-    for (std::size_t n = 0; n < choice.names.size(); ++n) {
-        progress.show(static_cast<double>(n) / static_cast<double>(choice.names.size()), choice.names[n]);
-        add_file_of(plan, loaded, choice.names[n], choice.plan.parent_path());
-    }
+    progress.show(0.0, "loading");
+    // Loads every file now, so that wrong units, open surfaces and damaged files are reported before the session.
+    const auto loaded = analysis::load_each(plan.fragments, folder, plan::Paint::as_filed, [&](std::size_t count) {
+        progress.show(static_cast<double>(count) / static_cast<double>(plan.fragments.size()), "loading");
+    });
+    check_are_different(plan, loaded);
     progress.clear();
     plan::save_case_plan(plan, choice.plan);
     if (!choice.result.json) fmt::print("{}: {}\n", choice.plan.string(), counted(plan.fragments.size(), "fragment"));
