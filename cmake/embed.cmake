@@ -5,6 +5,7 @@ set(TACTUS_ABI ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 file(GLOB embed CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/embed/*.cpp)
 add_library(tactus_embed SHARED ${embed})
 set_source_files_properties(tools/embed/c_api.cpp PROPERTIES COMPILE_DEFINITIONS "TACTUS_VERSION=\"${PROJECT_VERSION}\"")
+tactus_precompile(tactus_embed <filesystem> <fmt/format.h> <functional> <map> ${PROJECT_SOURCE_DIR}/graph/node/node.hpp)
 set(rooms_in_library tactus_dsp tactus_assets tactus_graph tactus_devices tactus_nodes tactus_engine)
 # The objects, not the archives: of these the linker would take what the C functions need.
 foreach(room ${rooms_in_library})
