@@ -12,17 +12,20 @@ Spline::Spline(std::vector<double> x, std::vector<double> y) : x_(std::move(x)),
     if (n < 2 || y_.size() != n) throw Error("a spline needs at least two points");
     for (std::size_t i = 1; i < n; ++i)
         if (!(x_[i] > x_[i - 1])) throw Error("the places of a spline's points must increase");
-    // Tridiagonal system for the second derivatives: forward elimination.
+    if (n == 2) return;
+    // Tridiagonal system for the second derivatives: forward elimination. Those of the ends equal their neighbours'.
     std::vector<double> upper(n);
     for (std::size_t i = 1; i + 1 < n; ++i) {
         const double left = x_[i] - x_[i - 1], right = x_[i + 1] - x_[i];
-        const double rest = 2.0 * (left + right) - left * upper[i - 1];
+        const double rest =
+            2.0 * (left + right) - left * upper[i - 1] + (i == 1 ? left : 0.0) + (i + 2 == n ? right : 0.0);
         const double wanted = 6.0 * ((y_[i + 1] - y_[i]) / right - (y_[i] - y_[i - 1]) / left);
         upper[i] = right / rest;
         bend_[i] = (wanted - left * bend_[i - 1]) / rest;
     }
-    bend_[n - 1] = 0.0;
-    for (std::size_t i = n - 1; i-- > 1;) bend_[i] -= upper[i] * bend_[i + 1];
+    for (std::size_t i = n - 2; i-- > 1;) bend_[i] -= upper[i] * bend_[i + 1];
+    bend_[0] = bend_[1];
+    bend_[n - 1] = bend_[n - 2];
 }
 
 Spline::Point Spline::operator()(double x) const noexcept {

@@ -8,7 +8,8 @@
 
 namespace tactus::geometry {
 
-/// Natural cubic spline (C²); extrapolates linearly beyond its ends.
+/// Cubic spline (C²) that is a parabola in its first and last interval: exact for parabolas, unlike a natural spline,
+/// whose slope at an end is off where the curve bends. Extrapolates linearly beyond its ends.
 class Spline {
 public:
     /// `x` and `y` have equal length, at least two; `x` strictly increasing. Allocates. Throws Error.

@@ -7,12 +7,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 namespace tactus::signal {
 
 namespace {
+
+constexpr double max_smoothing = 1e6;  // smooths over about ten pulses
+constexpr std::size_t end_frames = 5;  // of a ridge, from which its ends are extrapolated
 
 /// Power at a position between two bins of a zero-padded spectrum.
 double between(std::span<const double> power, double bin) {
@@ -35,6 +41,95 @@ double salience(std::span<const double> power, double floor, double bins_per_hz,
     return sum / weights;
 }
 
+/// Minimum of Σ (z − x)² + λ Σ w (Δ³z)² (Whittaker 1923; Eilers 2003), by the Cholesky factors of a matrix of three
+/// diagonals beside the main one. A parabola stays as it is, at its ends too. `weights`: w, one per third difference.
+std::vector<double> whittaker(std::span<const double> x, std::span<const double> weights, double lambda) {
+    constexpr double third[] = {-1.0, 3.0, -3.0, 1.0};
+    const std::size_t n = x.size();
+    // Row i: elements i − 3 … i of I + λDᵀD = LLᵀ.
+    std::vector<std::array<double, 4>> l(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t back = 0; back <= std::min<std::size_t>(3, i); ++back) {
+            double sum = back == 0 ? 1.0 : 0.0;
+            for (std::size_t row = i > 3 ? i - 3 : 0; row + 3 < n && row + back <= i; ++row)
+                sum += lambda * weights[row] * third[i - row] * third[i - back - row];
+            l[i][3 - back] = sum;
+        }
+        for (std::size_t j = i > 3 ? i - 3 : 0; j <= i; ++j) {
+            double& element = l[i][3 - (i - j)];
+            for (std::size_t k = i > 3 ? i - 3 : 0; k < j; ++k) element -= l[i][3 - (i - k)] * l[j][3 - (j - k)];
+            element = j < i ? element / l[j][3] : std::sqrt(element);
+        }
+    }
+    std::vector<double> z(x.begin(), x.end());
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t back = 1; back <= std::min<std::size_t>(3, i); ++back) z[i] -= l[i][3 - back] * z[i - back];
+        z[i] /= l[i][3];
+    }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t on = 1; on <= std::min<std::size_t>(3, n - 1 - i); ++on) z[i] -= l[i + on][3 - on] * z[i + on];
+        z[i] /= l[i][3];
+    }
+    return z;
+}
+
+/// The smoothest times whose distance from the given ones is at most `distance` (root of the sum of squares) and
+/// `farthest` for each (discrepancy principle, Morozov 1966).
+std::vector<double> smoothed(std::span<const double> times, double distance, double farthest) {
+    if (!(distance > 0.0)) return {times.begin(), times.end()};
+    // Less the line through both ends: a rate that hardly varies leaves little to round.
+    const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    std::vector<double> rest(times.size()), best;
+    for (std::size_t i = 0; i < times.size(); ++i) rest[i] = times[i] - times[0] - step * static_cast<double>(i);
+    // At a low rate a sample is a small part of the period, and the rate may change much from one pulse to the next: third
+    // differences of a steady acceleration are as the fifth power of the period. The fourth smooths them too.
+    std::vector<double> weights;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 3 < times.size(); ++i) {
+        weights.push_back(times[i + 3] - times[i]);
+        shortest = std::min(shortest, weights.back());
+    }
+    for (double& weight : weights) weight = std::pow(shortest / weight, 8.0);
+    const auto is_near = [&](const std::vector<double>& z) {
+        double squares = 0.0, most = 0.0;
+        for (std::size_t i = 0; i < z.size(); ++i) {
+            squares += (z[i] - rest[i]) * (z[i] - rest[i]);
+            most = std::max(most, std::abs(z[i] - rest[i]));
+        }
+        return squares <= distance * distance && most <= farthest;
+    };
+    best = whittaker(rest, weights, max_smoothing);
+    if (!is_near(best)) {
+        double low = -3.0, high = std::log10(max_smoothing);  // log10 λ
+        best = rest;
+        for (int round = 0; round < 10; ++round) {
+            const double middle = 0.5 * (low + high);
+            std::vector<double> z = whittaker(rest, weights, std::pow(10.0, middle));
+            const bool near = is_near(z);
+            (near ? low : high) = middle;
+            if (near) best = std::move(z);
+        }
+    }
+    for (std::size_t i = 0; i < times.size(); ++i) best[i] += times[0] + step * static_cast<double>(i);
+    // Times of pulses increase.
+    return std::ranges::adjacent_find(best, std::greater_equal<>()) == best.end()
+               ? best
+               : std::vector<double>(times.begin(), times.end());
+}
+
+/// Frequency at `t` on the line of least squares through so many points of a ridge from `first` on.
+double on_line(const Ridge& ridge, std::size_t first, std::size_t count, double t) {
+    double time = 0.0, frequency = 0.0, squares = 0.0, products = 0.0;
+    for (std::size_t i = first; i < first + count; ++i) time += ridge.time[i], frequency += ridge.frequency[i];
+    time /= static_cast<double>(count), frequency /= static_cast<double>(count);
+    for (std::size_t i = first; i < first + count; ++i) {
+        squares += (ridge.time[i] - time) * (ridge.time[i] - time);
+        products += (ridge.time[i] - time) * ridge.frequency[i];
+    }
+    const double there = squares > 0.0 ? frequency + products / squares * (t - time) : frequency;
+    return std::clamp(there, 0.8 * frequency, 1.25 * frequency);
+}
+
 }  // namespace
 
 Rotation rotation_from_tacho(std::span<const double> tacho, double rate, double pulses) {
@@ -54,6 +149,7 @@ void TachoStream::push(std::span<const double> tacho) {
         if (x < middle_ - hysteresis_) armed_ = true;
         if (!armed_ || x < middle_ || before >= middle_) continue;
         armed_ = false;
+        steep_ += x - before >= steep_edge_;
         times_.push_back((static_cast<double>(i) - (x - middle_) / (x - before)) / rate_);
     }
 }
@@ -64,20 +160,24 @@ Rotation TachoStream::rotation(double pulses) const {
             fmt::format("the tachometer channel has {} pulses; order analysis needs at least 4", times_.size()));
     std::vector<double> turns(times_.size());
     for (std::size_t i = 0; i < turns.size(); ++i) turns[i] = static_cast<double>(i) / pulses;
-    return {std::move(turns), times_};
+    return {std::move(turns), smoothed(times_, std::sqrt(static_cast<double>(steep_) / 12.0) / rate_, 1.0 / rate_)};
 }
 
 Rotation rotation_at(double frequency, double seconds) { return {{0.0, seconds * frequency}, {0.0, seconds}}; }
 
 Rotation Ridge::rotation(double seconds) const {
-    // Revolutions: trapezoidal integral of the rate, from the first sample to the last.
+    // Revolutions: trapezoidal integral of the rate, from the first sample to the last. Half a frame at each end has no
+    // frame of its own.
+    const std::size_t count = std::min(end_frames, time.size());
     std::vector<double> turns{0.0}, times{0.0};
+    double before = on_line(*this, 0, count, 0.0);
     for (std::size_t i = 0; i <= time.size(); ++i) {
         const double t = i < time.size() ? time[i] : seconds;
-        const double before = frequency[i == 0 ? 0 : i - 1], now = frequency[std::min(i, time.size() - 1)];
+        const double now = i < time.size() ? frequency[i] : on_line(*this, time.size() - count, count, seconds);
         if (t <= times.back()) continue;
         turns.push_back(turns.back() + 0.5 * (before + now) * (t - times.back()));
         times.push_back(t);
+        before = now;
     }
     return {std::move(turns), std::move(times)};
 }

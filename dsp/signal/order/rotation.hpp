@@ -15,21 +15,23 @@ namespace tactus::signal {
 using Rotation = geometry::Spline;
 
 /// Rising crossings of the middle between the tachometer's low and high level, with a hysteresis of a tenth of their
-/// distance; `pulses` per revolution. Throws Error for fewer than four.
+/// distance; `pulses` per revolution. The time of an edge that is steeper than a sample is known to a sample only, of
+/// which the difference between two pulses would make a wrong rate: such times are smoothed as far as that uncertainty
+/// accounts for. Throws Error for fewer than four.
 Rotation rotation_from_tacho(std::span<const double> tacho, double rate, double pulses);
 
 /// The same for a channel that comes in pieces; `low` and `high` are its extremes.
 class TachoStream {
 public:
     TachoStream(double low, double high, double rate)
-        : middle_(0.5 * (low + high)), hysteresis_(0.1 * (high - low)), rate_(rate) {}
+        : middle_(0.5 * (low + high)), hysteresis_(0.1 * (high - low)), steep_edge_(0.8 * (high - low)), rate_(rate) {}
     void push(std::span<const double> tacho);
     /// Throws Error for fewer than four pulses.
     Rotation rotation(double pulses) const;
 
 private:
-    double middle_, hysteresis_, rate_, before_ = 0.0;
-    std::size_t count_ = 0;
+    double middle_, hysteresis_, steep_edge_, rate_, before_ = 0.0;
+    std::size_t count_ = 0, steep_ = 0;  // samples; edges within one sample
     bool armed_ = false;
     std::vector<double> times_;
 };

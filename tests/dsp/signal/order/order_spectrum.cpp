@@ -45,6 +45,38 @@ TEST_CASE("orders 1 to 4 of a run-up from 50 to 233 Hz keep their amplitude with
     for (int k = 5; k <= 8; ++k) CHECK(spectrum.orders[static_cast<std::size_t>(k - 1)].amplitude < 1e-3);
 }
 
+TEST_CASE("the rate of a run-up is right from its first pulse to its last, whatever the shape of the pulses") {
+    for (const bool is_square : {false, true})
+        for (const double low : {20.0, 50.0})
+            for (const double pulses : {1.0, 4.0}) {
+                std::vector<double> tacho(static_cast<std::size_t>(sample_rate * seconds));
+                const auto turns = [&](double t) { return low * t + 0.5 * (233.0 - low) / seconds * t * t; };
+                for (std::size_t i = 0; i < tacho.size(); ++i) {
+                    tacho[i] = std::sin(2.0 * std::numbers::pi * pulses * turns(static_cast<double>(i) / sample_rate));
+                    if (is_square) tacho[i] = tacho[i] > 0.0 ? 5.0 : 0.0;
+                }
+                const signal::Rotation rotation = signal::rotation_from_tacho(tacho, sample_rate, pulses);
+                double worst = 0.0;
+                for (int i = 0; i <= 1000; ++i) {
+                    const auto [t, slope] =
+                        rotation(std::lerp(rotation.first(), rotation.last(), static_cast<double>(i) / 1000.0));
+                    worst = std::max(worst, std::abs(1.0 / slope / (low + (233.0 - low) / seconds * t) - 1.0));
+                }
+                CAPTURE(is_square, low, pulses);
+                CHECK(worst < 1e-2);
+                CHECK(signal::highest_rate(rotation) == Approx(233.0).epsilon(2e-3));
+            }
+}
+
+TEST_CASE("cycles that differ are not smoothed away where the pulses locate them") {
+    std::vector<double> tacho(static_cast<std::size_t>(sample_rate * seconds));
+    const auto turns = [](double t) { return 30.0 * t + 0.15 * std::sin(2.0 * std::numbers::pi * 3.0 * t); };
+    for (std::size_t i = 0; i < tacho.size(); ++i)
+        tacho[i] = std::sin(2.0 * std::numbers::pi * turns(static_cast<double>(i) / sample_rate)) > 0.0 ? 1.0 : 0.0;
+    const signal::Rotation rotation = signal::rotation_from_tacho(tacho, sample_rate, 1.0);
+    CHECK(signal::highest_rate(rotation) == Approx(30.0 + 0.15 * 2.0 * std::numbers::pi * 3.0).epsilon(0.01));
+}
+
 TEST_CASE("without a tachometer the rate is followed by its ridge, in noise too") {
     std::vector<double> x = run_up();
     const Random random{3};
