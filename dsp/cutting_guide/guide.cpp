@@ -18,6 +18,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace tactus::cutting_guide {
@@ -60,6 +61,34 @@ struct PlacedHole {
     Body body;
 };
 
+/// The solid without the parts that were dropped from its mesh.
+struct KeptSolid {
+    const GuideSolid& solid;
+    const geometry::TriangleTree& tree;  ///< of the mesh
+    const geometry::TriangleSurface* mesh;  ///< null: none were dropped
+
+    bool has(const Vec3& p) const { return solid.value(p) < 0.0 && (!mesh || winding(*mesh, p) > 0.5); }
+    /// Whether a point on the solid's surface is one of the mesh, whose triangles lie up to `sag` within round faces.
+    bool is_near(const Vec3& p) const {
+        constexpr double sag = 0.2 * mm;
+        return !mesh || tree.nearest(p, sag).distance < sag;
+    }
+
+private:
+    /// By solid angles (Van Oosterom, Strackee 1983): 1 inside, 0 outside.
+    static double winding(const geometry::TriangleSurface& surface, const Vec3& p) {
+        double sum = 0.0;
+        for (const auto& t : surface.triangles) {
+            const auto from = [&](std::size_t n) { return surface.vertices[static_cast<std::size_t>(t[n])] - p; };
+            const Vec3 a = from(0), b = from(1), c = from(2);
+            const double x = glm::length(a), y = glm::length(b), z = glm::length(c);
+            sum += std::atan2(glm::dot(a, glm::cross(b, c)),
+                              x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
+        }
+        return sum / (2.0 * pi);
+    }
+};
+
 void check(const GuideSettings& s) {
     const auto positive = [](double value, const char* what) {
         if (!(value > 0.0 && value < 1.0)) throw Error(fmt::format("a guide needs a {} above 0", what));
@@ -79,7 +108,13 @@ public:
 
     MadeGuide make() {
         check(set_);
-        if (design_.cuts.empty() || design_.base.empty()) throw Error("a guide needs at least one cut and one base");
+        if ((design_.cuts.empty() && design_.fragments.empty()) || design_.base.empty())
+            throw Error("a guide needs at least one base, and cuts or fragments");
+        if (!design_.fragments.empty() && set_.offset + set_.thickness - set_.relief < set_.min_thickness())
+            throw Error(
+                fmt::format("the base is too thin over a fracture line, where {:.1f} mm of it are relieved: a "
+                            "thicker base or a smaller relief leaves more",
+                            set_.relief / mm));
         make_frame();
         find_slots();
         find_heights();
@@ -107,9 +142,12 @@ private:
         const std::vector<Body> texts = text_bodies();
         const double limit = set_.min_thickness() - wall_slack;
         // Walls between letters are as thin as their strokes are near: they do not hold the guide together.
-        const double skin = rail_y_ - set_.rail + set_.text_depth + 0.05 * mm;
+        const double face = rail_y_ - set_.rail, skin = face + set_.text_depth + 0.05 * mm;
+        const auto counts = [&](const Vec3& p) {
+            return p.y > skin || (slots_.empty() && (p.y < face - 0.05 * mm || p.z < top_ - rail_height(set_)));
+        };
         std::vector<bool> is_trimmed_at(slots_.size());
-        double volume_before = 0.0;  // 0: nothing was left out since
+        double whole_before = 0.0;  // with the loose parts; 0: nothing was left out since
         for (;;) {
             const std::size_t plain = solid.cuts.size();
             solid.cuts.insert(solid.cuts.end(), texts.begin(), texts.end());
@@ -117,15 +155,15 @@ private:
             solid.cuts.resize(plain);
             if (contour.surface.triangles.empty())
                 throw Error("nothing is left of the guide: it does not reach the bone");
-            const double volume = geometry::volume_of(contour.surface);
-            if (volume_before > 0.0) made_.thin_volume += std::max(0.0, volume_before - volume);
-            volume_before = 0.0;
+            const double volume = geometry::volume_of(contour.surface), whole = volume + contour.crumb_volume;
+            if (whole_before > 0.0) made_.thin_volume += std::max(0.0, whole_before - whole);
+            whole_before = 0.0;
             const geometry::TriangleTree tree(contour.surface);
-            const Walls walls = walls_of(contour.surface, tree, limit, [&](const Vec3& p) { return p.y > skin; }, run_);
+            const Walls walls = walls_of(contour.surface, tree, limit, counts, run_);
             if (walls.is_thin() && thin_cuts_.size() < max_rounds) {
-                for (const ThinWall& wall : walls.thin)
+                for (const ThinWall& wall : slots_.empty() ? std::vector<ThinWall>{} : walls.thin)
                     is_trimmed_at[nearest_slot(made_.slots, made_.frame.apply(wall.at))] = true;
-                volume_before = volume + (thin_cuts_.empty() ? contour.crumb_volume : 0.0);
+                whole_before = whole;
                 thin_cuts_.push_back(thin_parts(solid, tree, walls, limit, run_));
                 subtract(solid);
                 continue;
@@ -134,10 +172,15 @@ private:
             for (PlacedHole& hole : holes_) made_.holes.push_back(std::move(hole.made));
             made_.wall = walls.thinnest;
             if (made_.wall) made_.wall->at = made_.frame.apply(made_.wall->at);
+            made_.tapers = walls.tapers;
+            for (auto& taper : made_.tapers)
+                if (taper) taper->at = made_.frame.apply(taper->at);
+            made_.thin_volume += contour.crumb_volume;
             made_.thin_share = made_.thin_volume / (volume + made_.thin_volume);
             made_.loose_parts = contour.crumbs;
             note_trimmed(is_trimmed_at, contour.crumb_volume);
-            for (const Tube& tube : design_.tubes) made_.tubes.push_back(distance_to(tube, solid, tree));
+            const KeptSolid kept{solid, tree, contour.crumbs > 0 ? &contour.surface : nullptr};
+            for (const Tube& tube : design_.tubes) made_.tubes.push_back(distance_to(tube, kept));
             return contour;
         }
     }
@@ -146,7 +189,7 @@ private:
     /// deepest in it. Outside of the guide, the nearest points on the solid and on the line of the tube are then sought
     /// in turn, so that the distance does not depend on the mesh: its triangles are up to voxel² / 8 / radius within
     /// round faces.
-    TubeDistance distance_to(const Tube& tube, const GuideSolid& solid, const geometry::TriangleTree& tree) const {
+    TubeDistance distance_to(const Tube& tube, const KeptSolid& kept) const {
         constexpr double step = 0.25 * mm;
         std::vector<Vec3> line;
         for (const Vec3& p : tube.points) line.push_back(to_guide_.apply(p));
@@ -158,15 +201,15 @@ private:
             const int steps = 1 + static_cast<int>(glm::length(line[n + 1] - line[n]) / step);
             for (int k = 0; k <= steps; ++k) {
                 const Vec3 p = glm::mix(line[n], line[n + 1], static_cast<double>(k) / steps);
-                const bool is_within = solid.value(p) < 0.0;
+                const bool is_within = kept.has(p);
                 if (!is_within && least < 0.0) continue;
-                const auto near = is_within ? tree.nearest(p) : tree.nearest(p, least);
+                const auto near = is_within ? kept.tree.nearest(p) : kept.tree.nearest(p, least);
                 const double here = is_within ? -near.distance : near.distance;
                 if (here < least) least = here, at = p, on_guide = near.point, piece = n;
             }
         }
         for (int round = 0; round < 20 && least > 0.0 && piece < line.size(); ++round) {
-            on_guide = nearest_on(solid, at, on_guide);
+            on_guide = nearest_on(kept, at, on_guide);
             const Vec3 before = at;
             for (std::size_t n = piece > 0 ? piece - 1 : 0; n < std::min(piece + 2, line.size() - 1); ++n)
                 if (const Vec3 q = geometry::closest_on_segment(on_guide, line[n], line[n + 1]);
@@ -180,13 +223,16 @@ private:
 
     /// The point on the surface of the solid nearest to `p`, from `start` near it: steps along the surface towards `p`,
     /// each led back onto the surface by the normal, while they come nearer.
-    static Vec3 nearest_on(const GuideSolid& solid, const Vec3& p, const Vec3& start) {
+    static Vec3 nearest_on(const KeptSolid& kept, const Vec3& p, const Vec3& start) {
+        const GuideSolid& solid = kept.solid;
         const auto onto = [&](Vec3 q) {
             for (int n = 0; n < 4; ++n) q -= solid.value(q) * solid.normal(q);
             return q;
         };
         // At an edge of two faces the steps may end beside the solid.
-        const auto is_on = [&](const Vec3& q) { return std::abs(solid.value(q)) < 0.1 * tube_tolerance; };
+        const auto is_on = [&](const Vec3& q) {
+            return std::abs(solid.value(q)) < 0.1 * tube_tolerance && kept.is_near(q);
+        };
         Vec3 found = onto(start);
         if (!is_on(found)) return start;
         for (int n = 0; n < 30; ++n) {
@@ -202,11 +248,10 @@ private:
         std::string letters;
         for (std::size_t n = 0; n < slots_.size(); ++n)
             if (is_trimmed_at[n]) letters += fmt::format("{}{}", letters.empty() ? "" : ", ", design_.cuts[n].letter);
-        if (!letters.empty())
-            made_.notes.push_back(
-                fmt::format("parts thinner than {:.1f} mm near slot {} are left out: {:.1f} % of the "
-                            "guide's volume",
-                            set_.min_thickness() / mm, letters, 100.0 * made_.thin_share));
+        if (!letters.empty() || (slots_.empty() && !thin_cuts_.empty()))
+            made_.notes.push_back(fmt::format(
+                "parts thinner than {:.1f} mm{} are left out: {:.1f} % of the guide's volume",
+                set_.min_thickness() / mm, letters.empty() ? "" : " near slot " + letters, 100.0 * made_.thin_share));
         if (made_.loose_parts > 0)
             made_.notes.push_back(fmt::format("{} loose part{} of {:.0f} mm³ in all {} dropped", made_.loose_parts,
                                               made_.loose_parts == 1 ? "" : "s", loose_volume * 1e9,
@@ -239,6 +284,8 @@ private:
         const Vec3 y = glm::cross(z, x);
         Vec3 middle(0.0);
         for (const GuideCut& c : design_.cuts) middle += c.plane.origin / static_cast<double>(design_.cuts.size());
+        if (design_.cuts.empty())
+            for (const BaseSpan& b : design_.base) middle += b.point / static_cast<double>(design_.base.size());
         made_.frame = {middle, glm::normalize(glm::quat_cast(Mat3(x, y, z)))};
         to_guide_ = made_.frame.inverse();
         bone_ = design_.bone;
@@ -284,13 +331,44 @@ private:
             rail_y_ = std::min(rail_y_, s.low_y - set_.beyond);
             top_ = std::max(top_, s.top + set_.depth);
         }
+        if (slots_.empty()) find_bridge();
         find_rail();
+    }
+
+    /// The rail stands on the bases in the middle of the bone.
+    void find_bridge() {
+        rail_y_ = 0.5 * set_.rail;
+        const auto [from, to] = base_range();
+        double highest = -infinity;
+        for (const auto& triangle : bone_.triangles) {
+            std::vector<Vec3> part;
+            for (const int v : triangle) part.push_back(bone_.vertices[static_cast<std::size_t>(v)]);
+            for (const double sign : {-1.0, 1.0}) {
+                clip(part, Vec3(sign < 0.0 ? to : from, 0.0, 0.0), Vec3(sign, 0.0, 0.0));
+                clip(part, Vec3(0.0, -sign * rail_y_, 0.0), Vec3(0.0, sign, 0.0));
+            }
+            for (const Vec3& p : part) highest = std::max(highest, p.z);
+        }
+        if (!std::isfinite(highest)) throw Error("no bone lies below the bridge of the guide: choose another approach");
+        top_ = highest + set_.offset + set_.thickness + rail_height(set_);
+    }
+
+    /// x of the ends of all bases.
+    std::pair<double, double> base_range() const {
+        double from = infinity, to = -infinity;
+        for (const BaseSpan& b : design_.base)
+            for (const double t : {b.from, b.to}) {
+                const double x = to_guide_.apply(b.point + t * b.axis).x;
+                from = std::min(from, x), to = std::max(to, x);
+            }
+        return {from, to};
     }
 
     // Along x the rail reaches over all blocks, and is as long as its texts.
     void find_rail() {
         rail_low_ = top_ - rail_height(set_);
         double low = infinity, high = -infinity;
+        if (slots_.empty()) std::tie(low, high) = base_range();
         for (const Slot& s : slots_)
             for (const double z : {rail_low_, top_})
                 for (const double y : {rail_y_ - set_.rail, rail_y_}) {
@@ -318,6 +396,10 @@ private:
     }
 
     double letter_x(std::size_t n) const {
+        if (slots_.empty()) {
+            const BaseSpan& b = design_.base[n];
+            return to_guide_.apply(b.on ? b.on->at : b.point).x - 0.5 * design_.letters[n].width;
+        }
         const Slot& s = slots_[n];
         const double x = s.x_at(rail_y_ - set_.rail, top_ - 0.5 * rail_height(set_));
         return s.normal.x > 0.0 ? x - 1.0 * mm - design_.letters[n].width : x + 1.0 * mm;
@@ -385,12 +467,14 @@ private:
         const double lift = most + set_.rail_clearance - rail_low_;
         if (!(lift > 0.0)) return;
         if (lift > set_.max_lift)
-            throw Error(fmt::format(
-                "bone stands {:.0f} mm in the way of the rail that joins the slots: choose another approach, or make "
-                "one guide per cut",
-                lift / mm));
-        made_.notes.push_back(
-            fmt::format("the slots are {:.1f} mm deeper, so that the rail clears the bone", lift / mm));
+            throw Error(
+                fmt::format("bone stands {:.0f} mm in the way of the rail that {}: choose another approach, or make {}",
+                            lift / mm, slots_.empty() ? "bridges the fractures" : "joins the slots",
+                            slots_.empty() ? "guides of fewer fragments" : "one guide per cut"));
+        const std::string higher = slots_.empty()
+                                       ? fmt::format("the bridge is {:.1f} mm higher, so that its text", lift / mm)
+                                       : fmt::format("the slots are {:.1f} mm deeper, so that the rail", lift / mm);
+        made_.notes.push_back(higher + " clears the bone");
         top_ += lift;
         find_rail();
         high_.z = std::max(high_.z, top_ + 2.0 * set_.voxel);
@@ -415,6 +499,19 @@ private:
     /// What the base lies on. The rail keeps off the base: where they only graze, they would join by a thin web.
     void find_patches(const SeatedBone& bone) {
         const double reach = set_.offset + set_.thickness;
+        std::vector<geometry::TriangleTree> fragments;
+        for (geometry::TriangleSurface fragment : design_.fragments) {
+            for (Vec3& v : fragment.vertices) v = to_guide_.apply(v);
+            fragments.emplace_back(fragment);
+        }
+        find_relief(bone, fragments);
+        const auto is_on = [&](const BaseSpan& b, const Vec3& p) {
+            if (!b.on) return true;
+            const double away = fragments[b.on->fragment].nearest(p, 2.0 * mm).distance;
+            for (std::size_t n = 0; n < fragments.size(); ++n)
+                if (n != b.on->fragment && fragments[n].nearest(p, away).distance < away) return false;
+            return std::isfinite(away);
+        };
         for (const BaseSpan& b : design_.base) {
             const Vec3 point = to_guide_.apply(b.point), axis = to_guide_.rotate(b.axis);
             const Vec3 up = glm::normalize(Vec3(0.0, 0.0, 1.0) - axis.z * axis);
@@ -423,7 +520,7 @@ private:
             const double inset = std::min(0.5 * reach, 0.4 * (b.to - b.from)), half = 0.5 * set_.wrap;
             const auto belongs = [&](const Vec3& p, const Vec3& normal) {
                 const double t = glm::dot(p - point, axis);
-                if (t < b.from + inset || t > b.to - inset) return false;
+                if (t < b.from + inset || t > b.to - inset || !is_on(b, p)) return false;
                 const Vec3 r = p - point - t * axis;
                 const double away = glm::length(r);
                 if (!(away > 0.0)) return false;
@@ -437,15 +534,36 @@ private:
                     r + reach * glm::normalize(glm::dot(step, glm::cross(around, r)) < 0.0 ? -step : step);
                 return glm::dot(edge, up) > std::cos(half) * glm::length(edge);
             };
-            patches_.push_back(
-                std::make_shared<const Patch>(bone.patch_of(belongs, point + 0.5 * (b.from + b.to) * axis, run_)));
+            const Vec3 at = b.on ? to_guide_.apply(b.on->at) : point + 0.5 * (b.from + b.to) * axis;
+            patches_.push_back(std::make_shared<const Patch>(bone.patch_of(belongs, at, run_)));
         }
+        if (slots_.empty()) return;
         double low = rail_y_;
         for (const auto& patch : patches_) low = std::min(low, patch->low.y - reach - 1.0 * mm);
         rail_y_ = low;
         low_.y = std::min(low_.y, rail_y_ - set_.rail - 2.0 * set_.voxel);
         find_rail();
         cover_rail();
+    }
+
+    /// What is near two fragments.
+    void find_relief(const SeatedBone& bone, const std::vector<geometry::TriangleTree>& fragments) {
+        std::vector<std::shared_ptr<const Patch>> near;
+        for (const geometry::TriangleTree& tree : fragments)
+            near.push_back(bone.distance_from(tree, set_.relief + 2.0 * bone_spacing, run_));
+        const auto within = [&](std::size_t n) {
+            Term term{Term::Kind::near, Vec3(0.0), Vec3(0.0), set_.relief};
+            term.patch = near[n];
+            return term;
+        };
+        const auto limit = static_cast<float>(set_.relief);
+        for (std::size_t n = 0; n < near.size(); ++n)
+            for (std::size_t m = 0; m < n; ++m) {
+                const auto &a = near[m]->distance.grid.values, &b = near[n]->distance.grid.values;
+                bool do_meet = false;
+                for (std::size_t k = 0; k < a.size() && !do_meet; ++k) do_meet = a[k] < limit && b[k] < limit;
+                if (do_meet) slot_cuts_.push_back({within(m), within(n)});
+            }
     }
 
     void add_parts(GuideSolid& solid) {
@@ -485,8 +603,25 @@ private:
                                {Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.rail_clearance}});
     }
 
+    /// Without slots the rail reaches down to the bases, over which it stands.
+    void add_bridge(GuideSolid& solid, const SeatedBone& bone) const {
+        double from = infinity, to = -infinity, low = infinity;
+        for (const auto& patch : patches_) from = std::min(from, patch->low.x), to = std::max(to, patch->high.x);
+        for (double x = from; x <= to; x += bone_spacing)
+            if (const double top = bone.top(x, 0.0); std::isfinite(top)) low = std::min(low, top);
+        solid.parts.push_back({side(0, 1.0, to),
+                               side(0, -1.0, from),
+                               side(1, 1.0, rail_y_),
+                               side(1, -1.0, rail_y_ - set_.rail),
+                               side(2, 1.0, top_),
+                               side(2, -1.0, low),
+                               {Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.rail_clearance}});
+    }
+
     void add_cuts(GuideSolid& solid, const SeatedBone& bone) {
         const double width = set_.slot_width();
+        solid.cuts = slot_cuts_;
+        if (slots_.empty()) add_bridge(solid, bone);
         drop_strips(solid);
         for (std::size_t n = 0; n < slots_.size(); ++n) {
             const Slot& s = slots_[n];

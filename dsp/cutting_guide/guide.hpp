@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A printed guide that sits on a bone and holds the blade of a saw in the planes of a plan.
+// A printed guide that sits on a bone and holds the blade of a saw in the planes of a plan, or the fragments of a bone in
+// their planned places.
 #pragma once
 
 #include "dsp/core/constants.hpp"
@@ -23,14 +24,14 @@ namespace tactus::cutting_guide {
 
 /// Which walls a slot has.
 enum class Sides {
-    one = 1,   ///< a ledge: the wall on the kept side
-    two = 2,   ///< a wall on either side; the rail joins them above the end of the slot
+    one = 1,  ///< a ledge: the wall on the kept side
+    two = 2,  ///< a wall on either side; the rail joins them above the end of the slot
     three = 3  ///< the end at the rail is closed as well
 };
 
 /// Sizes in m. BoneReconstructionPlanner's values unless noted.
 struct GuideSettings {
-    double thickness = 4e-3;      ///< of the base
+    double thickness = 4e-3;  ///< of the base
     double wrap = 120.0 * degree;  ///< rad: the base reaches half of it to either side of the direction of removal
     double offset = 0.3e-3;  ///< between base and bone; 0.5e-3 over periosteum
     double blade = 0.4e-3;  ///< thickness that the blade cuts; a placeholder
@@ -51,6 +52,8 @@ struct GuideSettings {
     double min_wall_share = 0.5;  ///< of the second wall of a slot; with less the slot is a ledge: a placeholder
     double max_lean = 70.0 * degree;  ///< rad, between the approach and a cut: a placeholder
     double max_lift = 15e-3;  ///< by which slots may rise so that the rail clears the bone: a placeholder
+    double relief =
+        1.5e-3;  ///< round a fracture line nothing touches the bone, and nothing fills the gap: a placeholder
 
     double slot_width() const { return blade + 2.0 * clearance; }
     /// m: no part of the guide may be thinner.
@@ -69,6 +72,12 @@ struct BaseSpan {
     double from = 0.0, to = 0.0;  ///< m along the axis
     /// The base lies on the negative side of it; none: also beyond the cuts.
     std::optional<reconstruction::Plane> until{};
+    /// The base lies on one of the design's fragments only, on the part of it nearest to a point, m.
+    struct OnFragment {
+        std::size_t fragment = 0;
+        Vec3 at{0.0};
+    };
+    std::optional<OnFragment> on{};
 };
 
 struct GuideHole {
@@ -110,14 +119,16 @@ struct GuideText {
 
 struct GuideDesign {
     geometry::TriangleSurface bone;
+    std::vector<geometry::TriangleSurface>
+        fragments;  ///< parts of the bone that the guide holds together; usually none
     Vec3 removal{0.0, 0.0, 1.0};  ///< unit: the guide is taken off along it and put on against it
-    Vec3 along{1.0, 0.0, 0.0};  ///< unit: from slot to slot
-    std::vector<GuideCut> cuts;  ///< at least one
+    Vec3 along{1.0, 0.0, 0.0};  ///< unit: from slot to slot, or along the bridge
+    std::vector<GuideCut> cuts;  ///< at least one, or none with fragments
     std::vector<BaseSpan> base;  ///< at least one
     std::vector<GuideHole> holes;
     std::vector<Tube> tubes;  ///< to keep clear of, in the frame of the bone
     std::array<GuideText, 2> text;  ///< above and below the letters
-    std::vector<GuideText> letters;  ///< one per cut; empty: none
+    std::vector<GuideText> letters;  ///< one per cut, without cuts one per base; empty: none
     GuideSettings settings;
 };
 
@@ -144,6 +155,16 @@ struct ThinWall {
     Vec3 at{0.0};  ///< the middle of the wall
 };
 
+/// The end of a wall whose faces are not parallel, thinner than GuideSettings::min_thickness.
+struct Taper {
+    double thickness = 0.0;  ///< m, of the chord that meets both faces at equal angles; 0: a sharp edge
+    double angle = 0.0;  ///< rad, between the faces
+    Vec3 at{0.0};  ///< the middle of the chord
+};
+inline constexpr double taper_step = 30.0 * degree;
+/// The thinnest of those whose faces are at most 30° apart, and of those between 30° and 60°; none: no such end.
+using Tapers = std::array<std::optional<Taper>, 2>;
+
 struct MadeGuide {
     geometry::TriangleSurface surface;  ///< m, in the frame of the bone
     Pose frame;  ///< of x along the slots and z along the removal
@@ -152,9 +173,10 @@ struct MadeGuide {
     std::vector<MadeText> texts;
     std::vector<TubeDistance> tubes;  ///< of each tube of the design
     std::optional<ThinWall> wall;  ///< the thinnest, except of text; none: no wall is below max_measured_wall
-    double thin_volume = 0.0;  ///< m³ left out as thinner than GuideSettings::min_thickness, with the loose parts
+    Tapers tapers;  ///< except of text
+    double thin_volume = 0.0;  ///< m³ left out as thinner than GuideSettings::min_thickness, and of the loose parts
     double thin_share = 0.0;  ///< of the volume of the guide before that
-    std::size_t loose_parts = 0;  ///< that came off, and were dropped; part of thin_volume
+    std::size_t loose_parts = 0;  ///< separate parts that were dropped; their volume is part of thin_volume
     std::vector<std::string> notes;  ///< what was left out or changed
     std::size_t flipped = 0, smoothed = 0;  ///< see geometry::Contour
 };
@@ -165,7 +187,11 @@ struct MadeGuide {
 /// the other wall leaves bone. A rail beside the bone joins the blocks, and bears the text. All is united and
 /// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. What is thinner
 /// than min_thickness is left out, and stated in `thin_share`: strips between two slots, which have notes of their own,
-/// do not count there. Throws Error for planes through which no blade can come along the removal (more than max_lean
+/// do not count there.
+///
+/// Without cuts, the bases lie on fragments in their planned places: the rail stands on them in the middle and bridges
+/// the fractures. Within `relief` of two fragments nothing is left of the guide: edges of fractures are uncertain, and
+/// in a gap a fin would be left. Throws Error for planes through which no blade can come along the removal (more than max_lean
 /// between them), for bone that stands in the way of the rail, for guides that need more than 150 million samples and
 /// numbers that cannot be.
 MadeGuide make_guide(const GuideDesign& design, const RunJobs& run);

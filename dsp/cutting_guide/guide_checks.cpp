@@ -49,6 +49,7 @@ void each_of(const geometry::TriangleSurface& surface, int job, const Each& each
 struct Ball {
     double radius = 0.0;  // m
     bool is_bounded = false;  // by an opposite face: its diameter is the thickness of a wall
+    double angle = 0.0;  // rad, between the faces
 };
 
 Vec3 middle_of(const Facet& f, double radius) { return f.middle - radius * f.normal; }
@@ -67,7 +68,48 @@ Ball ball_at(const geometry::TriangleTree& tree, const Facet& f, double max_radi
     }
     const bool is_opposite =
         std::isfinite(near.distance) && near.normal != Vec3(0.0) && !(glm::dot(near.normal, f.normal) > opposite);
-    return {radius, is_opposite};
+    return {radius, is_opposite,
+            is_opposite ? std::acos(std::clamp(-glm::dot(near.normal, f.normal), -1.0, 1.0)) : 0.0};
+}
+
+/// The thinnest place of the wall between a facet and the face on the other side of the solid, which three lines from
+/// the facet along its normal find; none: there is none, or its normal differs by less than 120°.
+std::optional<Taper> taper_at(const geometry::TriangleTree& tree, const std::array<Vec3, 3>& corners, const Facet& f,
+                              double limit) {
+    // m: from the facet into the solid, and the radius of a ball that replaces a line.
+    constexpr double skin = 1e-4 * mm, line = 1e-6 * mm;
+    // The normal of a facet without area, as at the corner of two slots, may point into the solid.
+    constexpr double least_area = 1e-3 * mm * mm;
+    if (f.area < least_area) return {};
+    const auto depth = [&](const Vec3& from, const Vec3& along) {
+        const double reach = 2.0 * limit + skin;
+        const double part = tree.sweep(from + skin * along, reach * along, line);
+        return part < 1.0 ? skin + part * reach : infinity;
+    };
+    std::array<Vec3, 3> other{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3 from = 0.5 * (corners[c] + f.middle);
+        const double away = depth(from, -f.normal);
+        if (!std::isfinite(away)) return {};
+        other[c] = from - away * f.normal;
+    }
+    Vec3 normal = glm::cross(other[1] - other[0], other[2] - other[0]);
+    if (!(glm::length(normal) > 0.0)) return {};
+    normal = glm::normalize(glm::dot(normal, f.normal) > 0.0 ? -normal : normal);
+    const double angle = std::acos(std::clamp(-glm::dot(normal, f.normal), -1.0, 1.0));
+    if (angle > 2.0 * taper_step) return {};
+    const Vec3 across = glm::normalize(normal - f.normal);
+    std::optional<Taper> thinnest;
+    for (const Vec3& corner : corners) {
+        const Vec3 from = 0.95 * corner + 0.05 * f.middle;
+        // What lies between, such as the end of the wall, is not the other face.
+        const double wanted = glm::dot(other[0] - from, normal) / glm::dot(across, normal), found = depth(from, across);
+        if (!(found < limit && std::abs(found - wanted) < 0.02 * mm + 0.05 * found)) continue;
+        const Vec3 out = tree.nearest(from + found * across, 0.1 * mm).normal;
+        if (glm::dot(out, across) < 0.0) continue;  // a line through the air
+        if (!thinnest || found < thinnest->thickness) thinnest = Taper{found, angle, from + 0.5 * found * across};
+    }
+    return thinnest;
 }
 
 /// Points in cubic cells as wide as the distance within which they are sought.
@@ -107,6 +149,27 @@ void keep_thinnest(std::vector<ThinWall>& walls, const ThinWall& wall) {
     if (walls.size() > wall_triangles) walls.pop_back();
 }
 
+/// The thinnest ends of each class of angles.
+struct TaperLists {
+    std::array<std::vector<Taper>, 2> tapers;
+
+    void add(const Taper& taper) {
+        auto& list = tapers[taper.angle > taper_step ? 1 : 0];
+        list.insert(std::ranges::upper_bound(list, taper.thickness, {}, &Taper::thickness), taper);
+        if (list.size() > wall_triangles) list.pop_back();
+    }
+    void add(const TaperLists& others) {
+        for (const auto& list : others.tapers)
+            for (const Taper& taper : list) add(taper);
+    }
+    Tapers thinnest() const {
+        Tapers found;
+        for (std::size_t n = 0; n < tapers.size(); ++n)
+            if (tapers[n].size() == wall_triangles) found[n] = tapers[n].back();
+        return found;
+    }
+};
+
 }  // namespace
 
 Walls walls_of(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree, double limit,
@@ -114,9 +177,12 @@ Walls walls_of(const geometry::TriangleSurface& surface, const geometry::Triangl
     struct Part {
         std::vector<ThinWall> thin, thicker;  // thicker: the thinnest of those that are not thin
         std::vector<Vec3> balls;  // see Walls
+        std::vector<double> angles;  // between the faces of each of `thin`
+        TaperLists tapers;
     };
     // Balls begin at `widest`, or at the thinnest walls that their job has found.
-    const auto measure = [&](Part& part, const Facet& f, double widest) {
+    const auto measure = [&](Part& part, std::size_t triangle, double widest) {
+        const Facet f = facet(surface, triangle);
         if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
         if (part.thicker.size() == wall_triangles) widest = part.thicker.back().thickness;
         const Ball ball = ball_at(tree, f, 0.5 * widest);
@@ -126,6 +192,12 @@ Walls walls_of(const geometry::TriangleSurface& surface, const geometry::Triangl
             if (ball.is_bounded) keep_thinnest(part.thicker, wall);
         } else if (ball.is_bounded) {
             part.thin.push_back(wall);
+            part.angles.push_back(ball.angle);
+        } else if (ball.radius > 0.0) {
+            const auto corner = [&](std::size_t n) {
+                return surface.vertices[static_cast<std::size_t>(surface.triangles[triangle][n])];
+            };
+            if (const auto taper = taper_at(tree, {corner(0), corner(1), corner(2)}, f, limit)) part.tapers.add(*taper);
         }
     };
     const auto run_parts = [&](int jobs, const auto& of_job) {
@@ -144,24 +216,33 @@ Walls walls_of(const geometry::TriangleSurface& surface, const geometry::Triangl
         thicker_of(run_parts((jobs_of(surface) + sample - 1) / sample, [&](int job, Part& part) {
             const auto end = std::min(surface.triangles.size(), (static_cast<std::size_t>(job) + 1) * chunk * sample);
             for (std::size_t t = static_cast<std::size_t>(job) * chunk * sample; t < end; t += sample)
-                measure(part, facet(surface, t), most);
+                measure(part, t, most);
         }));
     const double widest = sampled.size() < wall_triangles ? most : sampled.back().thickness;
     const std::vector<Part> parts = run_parts(jobs_of(surface), [&](int job, Part& part) {
-        each_of(surface, job, [&](const Facet& f) { measure(part, f, widest); });
+        const std::size_t first = static_cast<std::size_t>(job) * chunk,
+                          last = std::min(surface.triangles.size(), first + chunk);
+        for (std::size_t t = first; t < last; ++t) measure(part, t, widest);
     });
     Walls walls;
+    TaperLists tapers;
+    for (const Part& part : parts) tapers.add(part.tapers);
     std::vector<ThinWall> thinnest = thicker_of(parts);
     if (std::ranges::any_of(parts, [](const Part& part) { return !part.thin.empty(); })) {
         for (const Part& part : parts) walls.balls.insert(walls.balls.end(), part.balls.begin(), part.balls.end());
         const NearPoints near(walls.balls, 0.5 * limit);
         for (const Part& part : parts)
-            for (const ThinWall& wall : part.thin)
-                if (!near.is_any_near(wall.at)) walls.thin.push_back(wall);
+            for (std::size_t n = 0; n < part.thin.size(); ++n) {
+                const ThinWall& wall = part.thin[n];
+                if (near.is_any_near(wall.at)) continue;
+                walls.thin.push_back(wall);
+                tapers.add({wall.thickness * std::cos(0.5 * part.angles[n]), part.angles[n], wall.at});
+            }
         if (walls.thin.empty()) walls.balls.clear();
         for (const ThinWall& wall : walls.thin) keep_thinnest(thinnest, wall);
     }
     if (thinnest.size() == wall_triangles) walls.thinnest = thinnest.back();
+    walls.tapers = tapers.thinnest();
     return walls;
 }
 

@@ -22,6 +22,7 @@ inline constexpr std::size_t wall_triangles = 6;
 /// Walls of a closed surface.
 struct Walls {
     std::optional<ThinWall> thinnest;  ///< none: no wall is thinner than max_measured_wall
+    Tapers tapers;
     std::vector<ThinWall> thin;  ///< one per triangle whose wall is thinner than `limit`, in the order of the triangles
     std::vector<Vec3> balls;  ///< middles of balls as wide as `limit` within the solid; empty without thin walls
 
@@ -37,6 +38,11 @@ struct Walls {
 /// Where a wall ends with a round edge, balls become smaller towards the edge until the faces differ by 150°. This is
 /// no thin wall: a ball whose middle lies within a ball as wide as `limit` does not count. So a wall that ends as a
 /// wedge of `angle` may be missed as far as its end is thinner by less than limit sin(angle / 2): by 0.1 mm at 6°.
+///
+/// The ball at the end of a wedge touches the end, too, so that it is wider than the end is thick: a wedge of `angle`
+/// whose balls are as wide as `limit` ends no thinner than limit tan(45° - angle / 4), 0.77 of it at 30°. `tapers` has
+/// the ends themselves: where a ball is narrower than `limit` but touches no opposite face, lines across the solid find
+/// the face on the other side, and the chord at equal angles to both faces is the thickness.
 /// Triangles for which `counts` is false are not measured. `tree` is of `surface`. m.
 Walls walls_of(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree, double limit,
                const std::function<bool(const Vec3&)>& counts, const RunJobs& run);

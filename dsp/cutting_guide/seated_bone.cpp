@@ -163,6 +163,20 @@ Patch SeatedBone::patch_of(const std::function<bool(const Vec3&, const Vec3&)>& 
     return found;
 }
 
+std::shared_ptr<const Patch> SeatedBone::distance_from(const geometry::TriangleTree& tree, double cap,
+                                                       const RunJobs& run) const {
+    auto made = std::make_shared<Patch>(Patch{{field_.grid}, Vec3(0.0), Vec3(0.0)});
+    volume::Grid& grid = made->distance.grid;
+    run(grid.size[2], [&](int k) {
+        for (int j = 0; j < grid.size[1]; ++j) {
+            Closest closest;
+            for (int i = 0; i < grid.size[0]; ++i)
+                grid.at(i, j, k) = static_cast<float>(std::min(cap, closest.find(tree, grid.position(i, j, k), cap)));
+        }
+    });
+    return made;
+}
+
 double DistanceField::value(const Vec3& p) const noexcept {
     Vec3 at = (p - grid.origin) / grid.spacing;
     std::array<int, 3> n{};

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace tactus::cutting_guide {
@@ -47,6 +48,9 @@ public:
     /// Of the surface of that space, of what `belongs`, the connected part nearest to `at`. What is near a patch ends with a round edge beside it, at any shape of bone. Without such a part, `cap` everywhere and a box at `at`.
     Patch patch_of(const std::function<bool(const Vec3& p, const Vec3& normal)>& belongs, const Vec3& at,
                    const RunJobs& run) const;
+    /// Distance from other triangles in the same frame, at most `cap`, at the same samples.
+    std::shared_ptr<const Patch> distance_from(const geometry::TriangleTree& tree, double cap,
+                                               const RunJobs& run) const;
     /// z of the highest surface in the column of (x, y); none within the grid: -infinity.
     double top(double x, double y) const noexcept;
     /// The highest of `top` in a box of x and y; -infinity: no bone.

@@ -186,41 +186,49 @@ TEST_CASE("letters of a guide are read back from its rail", "[slow]") {
     }
 }
 
+namespace {
+
+/// A wedge of `length`, 10 mm deep, whose thickness grows from `thin` by `growth`; facets of half a millimetre.
+geometry::TriangleSurface wedge_of(double thin, double growth, double length) {
+    geometry::TriangleSurface wedge;
+    const int along = static_cast<int>(std::lround(length / (0.5 * mm)));
+    constexpr int across = 20, through = 6;
+    const auto index = [&](int i, int j, int k) { return (i * (across + 1) + j) * (through + 1) + k; };
+    for (int i = 0; i <= along; ++i)
+        for (int j = 0; j <= across; ++j)
+            for (int k = 0; k <= through; ++k)
+                wedge.vertices.push_back({0.5 * mm * i, 0.5 * mm * j,
+                                          (thin + growth * i / along) * (static_cast<double>(k) / through - 0.5)});
+    const auto quad = [&](int a, int b, int c, int d) {
+        wedge.triangles.push_back({a, b, c});
+        wedge.triangles.push_back({a, c, d});
+    };
+    for (int i = 0; i < along; ++i)
+        for (int j = 0; j < across; ++j) {
+            quad(index(i, j, through), index(i + 1, j, through), index(i + 1, j + 1, through),
+                 index(i, j + 1, through));
+            quad(index(i, j, 0), index(i, j + 1, 0), index(i + 1, j + 1, 0), index(i + 1, j, 0));
+        }
+    for (int k = 0; k < through; ++k) {
+        for (int i = 0; i < along; ++i) {
+            quad(index(i, 0, k), index(i + 1, 0, k), index(i + 1, 0, k + 1), index(i, 0, k + 1));
+            quad(index(i, across, k), index(i, across, k + 1), index(i + 1, across, k + 1), index(i + 1, across, k));
+        }
+        for (int j = 0; j < across; ++j) {
+            quad(index(0, j, k), index(0, j, k + 1), index(0, j + 1, k + 1), index(0, j + 1, k));
+            quad(index(along, j, k), index(along, j + 1, k), index(along, j + 1, k + 1), index(along, j, k + 1));
+        }
+    }
+    REQUIRE(test::flaws_of(wedge) == "none");
+    REQUIRE(test::volume_of(wedge) > 0.0);
+    return wedge;
+}
+
+}  // namespace
+
 TEST_CASE("the thinnest wall of a wedge is that of its thin end") {
     for (const double thin : {0.5 * mm, 1.0 * mm, 2.3 * mm, 4.0 * mm}) {
-        // 20 mm long, 10 mm deep, its thickness grows by 0.8 mm; facets of half a millimetre.
-        geometry::TriangleSurface wedge;
-        constexpr int along = 40, across = 20, through = 6;
-        const auto index = [&](int i, int j, int k) { return (i * (across + 1) + j) * (through + 1) + k; };
-        for (int i = 0; i <= along; ++i)
-            for (int j = 0; j <= across; ++j)
-                for (int k = 0; k <= through; ++k)
-                    wedge.vertices.push_back(
-                        {0.5 * mm * i, 0.5 * mm * j,
-                         (thin + 0.8 * mm * i / along) * (static_cast<double>(k) / through - 0.5)});
-        const auto quad = [&](int a, int b, int c, int d) {
-            wedge.triangles.push_back({a, b, c});
-            wedge.triangles.push_back({a, c, d});
-        };
-        for (int i = 0; i < along; ++i)
-            for (int j = 0; j < across; ++j) {
-                quad(index(i, j, through), index(i + 1, j, through), index(i + 1, j + 1, through),
-                     index(i, j + 1, through));
-                quad(index(i, j, 0), index(i, j + 1, 0), index(i + 1, j + 1, 0), index(i + 1, j, 0));
-            }
-        for (int k = 0; k < through; ++k) {
-            for (int i = 0; i < along; ++i) {
-                quad(index(i, 0, k), index(i + 1, 0, k), index(i + 1, 0, k + 1), index(i, 0, k + 1));
-                quad(index(i, across, k), index(i, across, k + 1), index(i + 1, across, k + 1),
-                     index(i + 1, across, k));
-            }
-            for (int j = 0; j < across; ++j) {
-                quad(index(0, j, k), index(0, j, k + 1), index(0, j + 1, k + 1), index(0, j + 1, k));
-                quad(index(along, j, k), index(along, j + 1, k), index(along, j + 1, k + 1), index(along, j, k + 1));
-            }
-        }
-        REQUIRE(test::flaws_of(wedge) == "none");
-        REQUIRE(test::volume_of(wedge) > 0.0);
+        const geometry::TriangleSurface wedge = wedge_of(thin, 0.8 * mm, 20.0 * mm);
         const geometry::TriangleTree tree(wedge);
         const auto counts = [](const Vec3&) { return true; };
         const Walls walls = walls_of(wedge, tree, 0.3 * mm, counts, run_in_turn);
@@ -236,6 +244,29 @@ TEST_CASE("the thinnest wall of a wedge is that of its thin end") {
         for (const ThinWall& wall : thinner.thin) thickest = std::max(thickest, wall.thickness);
         CHECK(thickest == Approx(thin + 0.4 * mm).margin(0.1 * mm));
     }
+}
+
+TEST_CASE("the end of a wedge of up to 60 degrees is as thick as measured, and its balls bound it up to 30 degrees") {
+    for (const double angle : {10.0, 20.0, 29.0, 31.0, 45.0, 59.0})
+        for (const double thin : {0.0, 0.5 * mm, 1.0 * mm, 2.3 * mm, 4.0 * mm}) {
+            INFO(angle << " degrees, " << thin / mm << " mm");
+            const double length = angle > 25.0 ? 8.0 * mm : 16.0 * mm;
+            // A sharp edge has no end face.
+            const geometry::TriangleSurface wedge =
+                wedge_of(std::max(thin, 0.001 * mm), 2.0 * length * std::tan(0.5 * angle * degree), length);
+            const geometry::TriangleTree tree(wedge);
+            const Walls walls = walls_of(wedge, tree, thin + 1.0 * mm, [](const Vec3&) { return true; }, run_in_turn);
+            const std::size_t of = angle > 30.0 ? 1 : 0;
+            REQUIRE(walls.tapers[of]);
+            CHECK(!walls.tapers[1 - of]);
+            CHECK(walls.tapers[of]->thickness == Approx(thin).margin(0.1 * mm));
+            CHECK(walls.tapers[of]->angle / degree == Approx(angle).margin(1.0));
+            if (of == 1 || thin == 0.0) continue;
+            REQUIRE(walls.thinnest);
+            // Balls are sampled at the middles of the facets.
+            CHECK(walls.thinnest->thickness * std::tan(45.0 * degree - 0.25 * angle * degree) < thin + 0.3 * mm);
+            CHECK(walls.thinnest->thickness > thin);
+        }
 }
 
 TEST_CASE("a smooth shaft does not hold a guide along itself and a ball does not hold it against turning") {
@@ -436,4 +467,87 @@ TEST_CASE("the distance of a guide from a vessel does not depend on the voxel", 
     }
     CHECK(made[0].tubes[4].distance == max_tube_distance);
     CHECK(made[0].tubes[5].distance < -1.0 * mm);
+}
+
+TEST_CASE("a loose part that is dropped counts as left out, and a tube through it does not meet the guide") {
+    GuideDesign design = base_with_wedge();
+    design.settings.min_wall = 0.3 * mm, design.settings.wrap = 40.0 * degree;
+    design.base[0].until.reset();
+    const MadeGuide whole = make_guide(design, run_in_turn);
+    REQUIRE(whole.loose_parts == 0);
+    // Beside the base, the edge of another one, which a plane cuts off.
+    design.base.push_back({Vec3(0.0), Vec3(1.0, 0.0, 0.0), -35.5 * mm, -34.5 * mm,
+                           reconstruction::Plane{Vec3(-37.0 * mm, 0.0, 0.0), Vec3(1.0, 0.0, 0.0)}});
+    const Vec3 in_part(-37.2 * mm, 0.0, 6.7 * mm);
+    design.tubes.push_back({{in_part, in_part + Vec3(0.0, 0.5 * mm, 0.0)}, 0.2 * mm});
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::parts_of(made.surface) == 1);
+    CHECK(made.loose_parts == 1);
+    CHECK(made.thin_volume - whole.thin_volume > 0.5e-9);
+    CHECK(made.thin_volume - whole.thin_volume < 8e-9);
+    CHECK(made.thin_share == Approx(made.thin_volume / (test::volume_of(made.surface) + made.thin_volume)));
+    const geometry::TriangleTree tree(made.surface);
+    CHECK(made.tubes[0].distance == Approx(tree.nearest(in_part).distance - 0.2 * mm).margin(0.05 * mm));
+    CHECK(made.tubes[0].distance > 3.0 * mm);
+}
+
+namespace {
+
+void check_reduction(unsigned seed, int fractures) {
+    INFO("seed " << seed);
+    const GuideDesign design = test::random_reduction(seed, fractures);
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::flaws_of(made.surface) == "none");
+    CHECK(test::parts_of(made.surface) == 1);
+    CHECK(test::volume_of(made.surface) > 0.0);
+    CHECK(geometry::self_intersections(made.surface).size() == 0);
+    CHECK(made.slots.empty());
+    for (const std::string& note : made.notes) UNSCOPED_INFO(note);
+    CHECK(made.holes.size() == design.holes.size());
+    CHECK((!made.wall || made.wall->thickness > design.settings.min_thickness() - wall_slack));
+    CHECK(made.thin_share < 0.05);
+    const geometry::TriangleTree bone(design.bone);
+    const auto seat_on = [&](const geometry::TriangleTree& tree) {
+        return seat_of(made.surface, tree, glm::normalize(design.removal), design.settings.offset, 0.3 * mm, 60.0 * mm,
+                       run_in_turn);
+    };
+    const Seat seat = seat_on(bone);
+    CHECK(seat.is_path_free);
+    CHECK(seat.min_distance > design.settings.offset - 0.1 * mm);
+    CHECK(seat.contact_share() > 0.5);
+    std::vector<geometry::TriangleTree> fragments;
+    for (const geometry::TriangleSurface& fragment : design.fragments) {
+        fragments.emplace_back(fragment);
+        CHECK(seat_on(fragments.back()).contact_area > 100e-6);
+    }
+    std::size_t touching = 0;
+    for (const Vec3& v : made.surface.vertices) {
+        int near = 0;
+        for (const geometry::TriangleTree& tree : fragments)
+            near += std::isfinite(tree.nearest(v, design.settings.relief - 0.1 * mm).distance);
+        touching += near > 1;
+    }
+    CHECK(touching == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a random guide for a reduction is closed, one part, seats on each fragment and keeps off the fracture",
+          "[slow]") {
+    check_reduction(1, 1);
+}
+
+// Costly: the guides of 40 broken bones, each meshed and checked.
+TEST_CASE("40 random guides for reductions are closed, one part, seat on each fragment and keep off the fractures",
+          "[long]") {
+    for (unsigned seed = 500; seed < 540; ++seed) check_reduction(seed, 1 + static_cast<int>(seed % 2));
+}
+
+TEST_CASE("a guide for a reduction is refused when nothing bridges the fracture") {
+    GuideDesign design = test::random_reduction(1, 1);
+    design.settings.relief = 3.5 * mm;
+    CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("too thin over a fracture"));
+    design = test::random_reduction(1, 1);
+    design.fragments.clear();
+    CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("cuts or fragments"));
 }

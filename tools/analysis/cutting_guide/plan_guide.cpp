@@ -4,13 +4,13 @@
 #include "tools/analysis/plan/case_warnings.hpp"
 
 #include "assets/mesh/mesh.hpp"
-#include "devices/display/figure_painter.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/self_intersection.hpp"
 #include "dsp/reconstruction/clearance.hpp"
 #include "dsp/reconstruction/donor_bone.hpp"
 #include "dsp/reconstruction/margin_wall.hpp"
+#include "tools/analysis/cutting_guide/guide_text.hpp"
 #include "tools/analysis/workers.hpp"
 
 #include <fmt/format.h>
@@ -29,61 +29,8 @@ namespace {
 using cutting_guide::GuideCut;
 using cutting_guide::GuideDesign;
 using cutting_guide::GuideHole;
-using cutting_guide::GuideText;
-
-constexpr double max_label = 16;        // characters
 
 Vec3 turned(const Vec3& v, const Vec3& axis, double angle) { return glm::angleAxis(angle, axis) * v; }
-
-/// Letters of the given height of capitals.
-class Letters {
-public:
-    explicit Letters(double height) {
-        double ignored = 0.0;
-        double low = 0.0;
-        for (const auto& outline : display::figure_painter().outlines("H", 1.0, true, ignored))
-            for (const auto& p : outline) low = std::min(low, p.y);
-        size_ = height / -low;
-    }
-    GuideText text(const std::string& words) const {
-        GuideText made;
-        for (const auto& outline : display::figure_painter().outlines(words, size_, true, made.width)) {
-            auto& to = made.outlines.emplace_back();
-            for (const auto& p : outline) to.emplace_back(p.x, -p.y);
-        }
-        return made;
-    }
-
-private:
-    double size_ = 1.0;
-};
-
-/// An arrow as high as capitals, after the text.
-void add_arrow(GuideText& text, double height, bool to_right) {
-    const double from = text.width + 0.5 * height, length = 2.5 * height, head = height, half = 0.5 * height;
-    cutting_guide::Outline arrow{{0.0, 0.65 * half}, {length - head, 0.65 * half}, {length - head, 0.0},
-                                 {length, half},     {length - head, 2.0 * half},  {length - head, 1.35 * half},
-                                 {0.0, 1.35 * half}};
-    for (auto& p : arrow) p.x = from + (to_right ? p.x : length - p.x);
-    text.outlines.push_back(std::move(arrow));
-    text.width = from + length;
-}
-
-void add_texts(GuideDesign& design, const std::string& title, const GuideChoice& choice, const std::string& side,
-               bool arrow_to_right) {
-    const double height = design.settings.text_height;
-    const Letters letters(height);
-    std::string label = choice.label.empty() ? title : choice.label;
-    if (choice.label.empty() && label.size() > max_label) label.resize(static_cast<std::size_t>(max_label));
-    for (const char c : label)
-        if (c < ' ' || c > '~')
-            throw Error(fmt::format("'{}' cannot be engraved: --label takes printable ASCII characters", label));
-    if (label.size() > max_label) throw Error(fmt::format("--label is longer than {:.0f} characters", max_label));
-    design.text[0] = letters.text(label + "  " + side);
-    design.text[1] = letters.text("RESEARCH");
-    add_arrow(design.text[1], height, arrow_to_right);
-    for (const GuideCut& cut : design.cuts) design.letters.push_back(letters.text(std::string(1, cut.letter)));
-}
 
 void add_letters(std::vector<GuideCut>& cuts) {
     for (std::size_t n = 0; n < cuts.size(); ++n) cuts[n].letter = static_cast<char>('A' + n);
@@ -268,8 +215,13 @@ std::optional<double> hole_to_cut(const GuideHole& hole, const GuideCut& cut) {
     return std::abs(glm::dot(hole.at - cut.plane.origin, cut.plane.normal)) - hole.radius;
 }
 
-/// "near slot C": the one whose walls are nearest.
+/// "near slot C": the one whose walls are nearest; without slots the nearest fragment.
 std::string near_slot(const PlannedGuide& guide, const Vec3& p) {
+    if (guide.made.slots.empty()) {
+        const auto away = [&](const cutting_guide::BaseSpan& b) { return glm::length(b.on->at - p); };
+        const auto nearest = std::ranges::min_element(guide.design.base, {}, away) - guide.design.base.begin();
+        return fmt::format("near fragment '{}'", guide.held[static_cast<std::size_t>(nearest)].name);
+    }
     const cutting_guide::GuideCut& cut = guide.made.slots[cutting_guide::nearest_slot(guide.made.slots, p)].cut;
     return fmt::format("near slot {} ({})", cut.letter, cut.name);
 }
@@ -323,7 +275,14 @@ void warn_clinically(PlannedGuide& guide) {
 
 }  // namespace
 
-const char* name_of(GuideBone bone) { return bone == GuideBone::fibula ? "fibula" : "jaw"; }
+const char* name_of(GuideBone bone) {
+    switch (bone) {
+        case GuideBone::fibula: return "fibula";
+        case GuideBone::jaw: return "jaw";
+        case GuideBone::reduction: return "reduction";
+    }
+    return "";
+}
 
 GuideDesign design_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
     GuideDesign design = choice.bone == GuideBone::fibula ? of_fibula(study, choice) : of_jaw(study, choice);
@@ -343,7 +302,9 @@ GuideDesign design_guide(const FlapStudy& study, const std::string& title, const
                : std::ranges::none_of(design.cuts, is_left) ? "R"
                                                             : "LR";
     }
-    add_texts(design, title, choice, side, to_right);
+    std::string letters;
+    for (const GuideCut& cut : design.cuts) letters += cut.letter;
+    add_texts(design, title, choice, side, to_right, letters);
     return design;
 }
 
@@ -388,6 +349,19 @@ void refuse_guide(const PlannedGuide& guide) {
                         guide.seat.min_distance / mm, set.offset / mm));
     if (!(guide.seat.contact_area > 0.0))
         throw Error("the guide does not touch the bone: choose another approach (--turn) or a wider base (--wrap)");
+    for (const HeldFragment& held : guide.held) {
+        if (held.contact_area < guide.choice.limits.min_region)
+            throw Error(fmt::format(
+                "the base touches fragment '{}' on {:.0f} mm², less than {:.3g} mm²: another approach (--turn), a "
+                "longer or wider base (--end, --wrap) may reach it; else leave it out (--fragments)",
+                held.name, held.contact_area * 1e6, guide.choice.limits.min_region * 1e6));
+        if (held.holes == 0)
+            throw Error(
+                fmt::format("no hole for a screw fits into the base on fragment '{}': a longer base (--end), "
+                            "thinner screws (--screw) or another approach (--turn) may make room; else leave "
+                            "it out (--fragments)",
+                            held.name));
+    }
     for (const NearVessel& v : guide.vessels) {
         if (v.away >= guide.choice.limits.touch && !v.is_covered) continue;
         throw Error(fmt::format(
@@ -422,17 +396,15 @@ void refuse_guide(const PlannedGuide& guide) {
     }
 }
 
-PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
+PlannedGuide measured_guide(GuideDesign design, const GuideChoice& choice) {
     const RunJobs run = on_threads();
     PlannedGuide guide;
     guide.bone = choice.bone;
-    guide.kerf = study.inputs().kerf;
-    guide.design = design_guide(study, title, choice);
+    guide.design = std::move(design);
     guide.choice = choice;
-    if (guide.bone == GuideBone::fibula) guide.design.tubes = tubes_of(study.flap(), choice);
     guide.made = cutting_guide::make_guide(guide.design, run);
     const geometry::TriangleSurface& surface = guide.made.surface;
-    const geometry::TriangleTree tree(surface), bone(guide.design.bone);
+    const geometry::TriangleTree bone(guide.design.bone);
     guide.topology = mesh::topology_of(surface);
     guide.intersections = geometry::self_intersections(surface, 100, run).size();
     guide.volume = mesh::volume_of(surface);
@@ -443,15 +415,28 @@ PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, co
         cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.limits.overhang);
     for (const cutting_guide::MadeSlot& slot : guide.made.slots)
         guide.refits.push_back(cutting_guide::refit_slot(surface, slot));
-    if (guide.bone == GuideBone::fibula) guide.vessels = vessels_near(guide, tree, study.flap(), choice);
     return guide;
+}
+
+PlannedGuide measured_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
+    GuideDesign design = design_guide(study, title, choice);
+    if (choice.bone == GuideBone::fibula) design.tubes = tubes_of(study.flap(), choice);
+    PlannedGuide guide = measured_guide(std::move(design), choice);
+    guide.kerf = study.inputs().kerf;
+    if (guide.bone == GuideBone::fibula)
+        guide.vessels = vessels_near(guide, geometry::TriangleTree(guide.made.surface), study.flap(), choice);
+    return guide;
+}
+
+void warn_of(PlannedGuide& guide) {
+    for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
+    warn_clinically(guide);
 }
 
 PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
     PlannedGuide guide = measured_guide(study, title, choice);
     refuse_guide(guide);
-    for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
-    warn_clinically(guide);
+    warn_of(guide);
     const reconstruction::FibulaPlan placed = study.placed_plan();
     for (std::size_t n = 0; n < placed.segments.size(); ++n) {
         const Pose &now = placed.segments[n].donor_to_target, &planned = study.fibula().segments[n].donor_to_target;

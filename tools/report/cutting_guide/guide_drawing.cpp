@@ -179,6 +179,8 @@ Figure guide_drawing(const analysis::PlannedGuide& guide) {
     Vec3 low(infinity), high(-infinity);
     for (const Vec3& v : surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
     double y = 0.0, z = 0.0;
+    // Without slots, at the height of the base in the middle of the bone.
+    if (slots.empty()) z = guide.made.frame.inverse().apply(guide.design.base.front().on->at).z;
     for (const DrawnSlot& s : slots)
         y += s.middle.y / static_cast<double>(slots.size()), z += s.middle.z / static_cast<double>(slots.size());
     geometry::TriangleSurface bone_surface = in_frame(guide.design.bone, guide.made.frame);
@@ -193,19 +195,24 @@ Figure guide_drawing(const analysis::PlannedGuide& guide) {
     above.bottom = 110.0 + (high.y - low.y) * pixels;
     along.bottom = above.bottom + 125.0 + (high.z - along.low) * pixels;
     Figure figure(width, along.bottom + 40.0);
-    figure.text({margin, 20.0}, "section at half the depth of the slots, seen from where the guide is put on", 12.0,
-                ink, TextAnchor::start, true);
+    figure.text({margin, 20.0},
+                slots.empty() ? "section through the base, seen from where the guide is put on"
+                              : "section at half the depth of the slots, seen from where the guide is put on",
+                12.0, ink, TextAnchor::start, true);
     draw_section(figure, section(surface, above, 2, z), solid, true);
     draw_slots_from_above(figure, above, slots, y, z, high.y);
     draw_holes(figure, above, guide);
-    figure.text({margin, above.bottom + 60.0}, "section along the bone; angles against the approach", 12.0, ink,
-                TextAnchor::start, true);
+    figure.text({margin, above.bottom + 60.0},
+                slots.empty() ? "section along the bone, through the bridge"
+                              : "section along the bone; angles against the approach",
+                12.0, ink, TextAnchor::start, true);
     draw_section(figure, section(bone_surface, along, 1, y), bone, false);
     draw_section(figure, section(surface, along, 1, y), solid, true);
     draw_slots_along(figure, along, slots, y);
     dimension(figure, {margin, along.bottom + 22.0}, {margin + 10.0 * mm * pixels, along.bottom + 22.0}, "10 mm");
     figure.text({margin + 10.0 * mm * pixels + 16.0, along.bottom + 26.0},
-                "mm; dashed: planes of the plan, which are the walls on the kept side", 10.0, ink);
+                slots.empty() ? "mm" : "mm; dashed: planes of the plan, which are the walls on the kept side", 10.0,
+                ink);
     return figure;
 }
 

@@ -18,12 +18,6 @@
 
 namespace tactus::report {
 
-namespace {
-
-constexpr Vec3 guide_colour(0.35, 0.62, 0.72), bone_colour(0.90, 0.86, 0.76), letter_colour(0.10, 0.20, 0.30);
-constexpr double around = 15.0 * mm;  // of bone that is shown beyond the guide
-
-/// Facets keep their own normals: the edges of a guide are sharp.
 display::PictureMesh flat_mesh(const geometry::TriangleSurface& surface, const Vec3& colour) {
     geometry::TriangleSurface split;
     for (const auto& t : surface.triangles) {
@@ -33,6 +27,17 @@ display::PictureMesh flat_mesh(const geometry::TriangleSurface& surface, const V
     }
     return render::picture_mesh(split, {}, {&colour, 1});
 }
+
+const Fields<analysis::GuideWarning>& guide_warning_fields() {
+    using W = analysis::GuideWarning;
+    static const Fields<W> all = Fields<W>("warning of a guide").text("code", "", &W::code).text("text", "", &W::text);
+    return all;
+}
+
+namespace {
+
+constexpr Vec3 guide_colour(0.35, 0.62, 0.72), bone_colour(0.90, 0.86, 0.76), letter_colour(0.10, 0.20, 0.30);
+constexpr double around = 15.0 * mm;  // of bone that is shown beyond the guide
 
 geometry::TriangleSurface near_guide(const analysis::PlannedGuide& guide) {
     Vec3 low(infinity), high(-infinity);
@@ -98,6 +103,44 @@ const Fields<cutting_guide::MadeHole>& hole_fields() {
     return all;
 }
 
+const Fields<analysis::HeldFragment>& held_fields() {
+    using H = analysis::HeldFragment;
+    static const Fields<H> all = Fields<H>("fragment that a guide holds")
+                                     .text("letter", "mark", [](const H& h) { return std::string(1, h.letter); })
+                                     .text("name", "fragment", &H::name)
+                                     .number("contact_mm2", "contact", from_si(0, "mm²"), &H::contact_area)
+                                     .integer("holes", "holes for screws", [](const H& h) { return h.holes; })
+                                     .number("play_mm", "play before it is screwed", from_si(1, "mm"), &H::play)
+                                     .number("play_deg", "", from_si(1, "°"), &H::play_angle);
+    return all;
+}
+
+const Fields<analysis::FractureGap>& fracture_fields() {
+    using G = analysis::FractureGap;
+    static const Fields<G> all = Fields<G>("fracture that a guide bridges")
+                                     .text("first", "fragment", &G::first)
+                                     .text("second", "and", &G::second)
+                                     .number("gap_mm", "gap, median", from_si(2, "mm"), &G::gap)
+                                     .number("overlap_mm3", "overlap", from_si(0, "mm³"), &G::overlap);
+    return all;
+}
+
+const Fields<cutting_guide::Taper>& taper_fields() {
+    using T = cutting_guide::Taper;
+    static const Fields<T> all = Fields<T>("thin end of a wall whose faces are not parallel")
+                                     .number("thickness_mm", "thickness", from_si(2, "mm"), &T::thickness)
+                                     .number("angle_deg", "angle of its faces", from_si(0, "°"), &T::angle)
+                                     .vector("at_mm", "", from_si(2, "mm"), [](const T& t) { return t.at; });
+    return all;
+}
+
+std::vector<cutting_guide::Taper> tapers_of(const analysis::PlannedGuide& g) {
+    std::vector<cutting_guide::Taper> all;
+    for (const auto& taper : g.made.tapers)
+        if (taper) all.push_back(*taper);
+    return all;
+}
+
 const Fields<analysis::NearVessel>& vessel_fields() {
     using V = analysis::NearVessel;
     static const Fields<V> all = Fields<V>("vessel or perforator near a guide")
@@ -105,12 +148,6 @@ const Fields<analysis::NearVessel>& vessel_fields() {
                                      .number("distance_mm", "from the guide", from_si(2, "mm"), &V::away)
                                      .vector("at_mm", "", from_si(2, "mm"), &V::at)
                                      .flag("perforator", "", &V::is_perforator);
-    return all;
-}
-
-const Fields<analysis::GuideWarning>& guide_warning_fields() {
-    using W = analysis::GuideWarning;
-    static const Fields<W> all = Fields<W>("warning of a guide").text("code", "", &W::code).text("text", "", &W::text);
     return all;
 }
 
@@ -176,11 +213,15 @@ std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
     };
     const char* planner = "BoneReconstructionPlanner";
     const bool on_fibula = g.bone == analysis::GuideBone::fibula;
-    return {
+    std::vector<SourcedValue> all{
         {"distance from the bone", in_mm(set.offset),
          from(set.offset, (on_fibula ? 0.5 : 0.3) * mm, on_fibula ? "for periosteum, remembered" : planner)},
         {"thickness of the base", in_mm(set.thickness), from(set.thickness, usual.thickness, planner)},
         {"covers of the outline", fmt::format("{:.0f}°", set.wrap / degree), from(set.wrap, usual.wrap, planner)},
+        {"hole of a screw", in_mm(2.0 * set.screw_radius), from(set.screw_radius, usual.screw_radius, planner)},
+    };
+    if (g.bone == analysis::GuideBone::reduction) return all;
+    const std::vector<SourcedValue> of_slots{
         {"depth of a slot", in_mm(set.depth), from(set.depth, usual.depth, planner)},
         {"wall of a slot", in_mm(set.wall), from(set.wall, usual.wall, planner)},
         {"blade", in_mm(set.blade),
@@ -190,8 +231,9 @@ std::vector<SourcedValue> sizes_of(const analysis::PlannedGuide& g) {
         {"clearance per side of the blade", in_mm(set.clearance),
          is(set.clearance, usual.clearance) ? "of a printer by light (sla)"
                                             : from(set.clearance, 0.4 * mm, "of a printer by filament (fdm)")},
-        {"hole of a screw", in_mm(2.0 * set.screw_radius), from(set.screw_radius, usual.screw_radius, planner)},
     };
+    all.insert(all.end(), of_slots.begin(), of_slots.end());
+    return all;
 }
 
 /// Thresholds, and sizes without an option of their own, with their sources.
@@ -221,9 +263,12 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
     using G = analysis::PlannedGuide;
     static const Fields<G> all =
         Fields<G>("guide for the cuts of a plan")
-            .remark([](const G&) {
-                return "For research, not a medical device. The wall of each slot on the kept side lies on the plan: a "
-                       "blade that is held against it cuts on plan.";
+            .remark([](const G& g) {
+                return std::string("For research, not a medical device. ") +
+                       (g.bone == analysis::GuideBone::reduction
+                            ? "The base lies on the fragments where the plan has them."
+                            : "The wall of each slot on the kept side lies on the plan: a blade that is held against "
+                              "it cuts on plan.");
             })
             .warnings("",
                       [](const G& g) {
@@ -233,7 +278,7 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
                       })
             .pictures(guide_pictures)
             .figure(
-                "to scale, widths as measured in the mesh", [](const G&) { return true; }, guide_drawing)
+                "to scale, as measured in the mesh", [](const G&) { return true; }, guide_drawing)
             .text("bone", "guide for the", [](const G& g) { return std::string(analysis::name_of(g.bone)); })
             .flag("closed", "closed", [](const G& g) { return g.topology.is_watertight(); })
             .integer("parts", "parts", [](const G& g) { return g.topology.components; })
@@ -248,6 +293,9 @@ const Fields<analysis::PlannedGuide>& planned_fields() {
             .integer("loose_parts", "loose parts dropped", [](const G& g) { return g.made.loose_parts; })
             .child("seating", "", seating_fields(), [](const G& g) -> const G& { return g; })
             .rows("slots", "slots", slot_fields(), slots_of)
+            .rows("fragments", "fragments", held_fields(), &G::held)
+            .rows("fractures", "fractures", fracture_fields(), &G::gaps)
+            .rows("tapers", "thin ends of walls", taper_fields(), tapers_of)
             .rows("holes", "holes", hole_fields(), [](const G& g) -> const auto& { return g.made.holes; })
             .rows("vessels", "vessels", vessel_fields(), &G::vessels)
             .number("play_deg", "", from_si(1, "°"), greatest_play)
@@ -278,6 +326,8 @@ std::vector<render::LabelledPicture> guide_pictures(const analysis::PlannedGuide
     std::vector<render::PictureLabel> letters;
     for (const cutting_guide::MadeSlot& s : guide.made.slots)
         letters.push_back({std::string(1, s.cut.letter), s.middle + 0.5 * s.depth * s.deep, letter_colour});
+    for (std::size_t n = 0; n < guide.held.size(); ++n)
+        letters.push_back({std::string(1, guide.held[n].letter), guide.design.base[n].on->at, letter_colour});
     const Pose& frame = guide.made.frame;
     const Vec3 x = frame.rotate(Vec3(1.0, 0.0, 0.0)), y = frame.rotate(Vec3(0.0, 1.0, 0.0)),
                z = frame.rotate(Vec3(0.0, 0.0, 1.0));

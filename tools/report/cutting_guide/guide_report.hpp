@@ -14,6 +14,11 @@ namespace tactus::report {
 /// pictures cannot be made.
 std::vector<render::LabelledPicture> guide_pictures(const analysis::PlannedGuide& guide);
 
+/// Facets keep their own normals: the edges of printed parts are sharp.
+display::PictureMesh flat_mesh(const geometry::TriangleSurface& surface, const Vec3& colour);
+
+const Fields<analysis::GuideWarning>& guide_warning_fields();
+
 /// A guide with the files that were written of it; `task`: "" without one.
 struct MadeGuideFiles {
     const analysis::PlannedGuide* guide;
