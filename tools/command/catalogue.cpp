@@ -82,7 +82,8 @@
     X(plan_limits, reconstruction)      \
     X(plan_paddle, reconstruction)      \
     X(plan_reach, reconstruction)       \
-    X(plan_guide, reconstruction)
+    X(plan_guide, reconstruction)       \
+    X(plan_template, reconstruction)
 
 #define TACTUS_EXPERIMENT_VERBS(X)    \
     X(experiment_run, experiment)     \
