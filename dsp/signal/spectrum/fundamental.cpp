@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/fundamental.hpp"
 
+#include "dsp/signal/spectrum/mains.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -225,10 +227,22 @@ SteadyFundamental FundamentalStream::lines_along(const Path& path, double median
     return steady_.estimate_along(course, static_cast<double>(section_length_) / rate_);
 }
 
+/// The lines of the whole record; along the course of one of them where the rate varies too much for sharp lines.
+SteadyFundamental FundamentalStream::resolved_lines() const {
+    SteadyFundamental lines = steady_.estimate();
+    if (lines.is_sharp && lines.confidence >= FundamentalEstimate::sure) return lines;
+    const SteadyFundamental straight = steady_.estimate_straightened();
+    if (straight.confidence >= FundamentalEstimate::sure) return straight;
+    // Blurred lines may lack the weak orders that sharp ones show.
+    if (straight.frequency > 0.0 && !lines.is_sharp && !alike(straight.frequency, lines.frequency, 0.02))
+        lines.confidence = std::min(lines.confidence, 0.9);
+    return lines;
+}
+
 FundamentalEstimate FundamentalStream::estimate() const {
     const Path path = best_path();
     FundamentalEstimate out = along(path);
-    const SteadyFundamental lines = steady_.estimate();
+    const SteadyFundamental lines = resolved_lines();
     const double seconds = static_cast<double>(pushed_) / rate_;
     const bool in_range = lines.frequency >= lowest_ && lines.frequency <= highest_;
     const bool is_sure = lines.confidence >= FundamentalEstimate::sure;
@@ -271,16 +285,22 @@ FundamentalEstimate FundamentalStream::estimate() const {
         if (is_wide && !out.steady && out.confidence >= FundamentalEstimate::wide_path && same &&
             still.explained >= 0.4 && out.low > 2.0 * section_least(rate_))
             out.certain = true;
-        if (still.confidence >= FundamentalEstimate::sure && still.frequency >= lowest_ &&
+        // The path may be that of other lines than those of the whole record, or of hum.
+        const bool is_contradicted = lines.confidence >= 0.9 && !alike(still.frequency, lines.frequency, 0.05);
+        if (still.confidence >= FundamentalEstimate::sure && !is_contradicted && still.frequency >= lowest_ &&
             still.frequency <= highest_) {
             const double scale = same ? 1.0 : still.frequency / out.frequency;
-            out.frequency *= scale, out.low *= scale, out.high *= scale;
+            out.frequency = same && is_wide ? out.frequency : still.frequency;
+            out.low *= scale, out.high *= scale;
             out.confidence = still.confidence;
             out.certain = true;
         }
     }
-    out.may_be_hum = !out.certain && lines.is_at_mains && lines.confidence_without_hum >= FundamentalEstimate::sure &&
-                     alike(lines.frequency, out.frequency, 0.003);
+    // Or the lines are one that is no hum, of which the rate is a fraction with the orders that may be.
+    const bool is_hum_rate = lines.is_at_mains && lines.confidence_without_hum >= FundamentalEstimate::sure &&
+                             alike(lines.frequency, out.frequency, 0.003);
+    out.may_be_hum = !out.certain && (is_hum_rate || (lines.may_combine_hum && may_be_hum_rate(out.frequency) &&
+                                                      !alike(lines.frequency, out.frequency, 0.003)));
     const auto add_rival = [&](double frequency, double score) {
         if (frequency > 0.0 && !alike(frequency, out.frequency, 0.03) &&
             std::ranges::none_of(out.rivals,

@@ -72,6 +72,7 @@ private:
     void end_section();
     Path best_path() const;
     FundamentalEstimate along(const Path& path) const;
+    SteadyFundamental resolved_lines() const;
     SteadyFundamental lines_along(const Path& path, double median) const;
 
     double lowest_, highest_, highest_moving_, rate_;

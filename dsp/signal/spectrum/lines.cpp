@@ -27,6 +27,8 @@ double floor_around(const Spectrum& spectrum, std::size_t k) {
     return *middle;
 }
 
+constexpr double line_error = 0.1;  // bins: deviation of the frequency of a line at the threshold
+
 double snr_of(const Spectrum& spectrum, std::size_t k) {
     const double floor = floor_around(spectrum, k);
     if (!(spectrum.power[k] > 0.0)) return 0.0;
@@ -134,16 +136,18 @@ std::vector<HumLine> find_hum(const Spectrum& spectrum, double fundamental) {
         return is_hum ? std::optional(line) : std::nullopt;
     };
     for (const int nominal : mains_frequencies) {
-        SpectralLine strongest;
-        double mains = 0.0;
-        for (int order = 1; order <= max_founding_order; ++order)
-            if (const auto line = line_at_place(order * nominal, mains_range); line && line->power > strongest.power)
-                strongest = *line, mains = strongest.frequency / order;
-        for (int order = 1; order <= 10 && mains > 0.0; ++order) {
-            const auto line = line_at_place(order * mains, 0.002);
+        std::vector<MainsLine> lines;
+        for (int order = 1; order <= max_mains_order; ++order)
+            if (const auto line = line_at_place(order * nominal, mains_range))
+                lines.push_back({line->frequency, line_error * spectrum.df, line->power});
+        const std::optional<MainsComb> mains = fit_mains(lines, nominal);
+        if (!mains) continue;
+        for (int order = 1; order <= max_mains_order; ++order) {
+            const auto line = line_at_place(order * mains->frequency, mains_drift);
             // 300 and 600 Hz belong to both families: the second one skips them.
-            if (line && std::ranges::none_of(
-                            found, [&](const HumLine& other) { return other.mains * other.order == nominal * order; }))
+            if (line && mains->order_of(line->frequency, line_error * spectrum.df) == order &&
+                std::ranges::none_of(
+                    found, [&](const HumLine& other) { return other.mains * other.order == nominal * order; }))
                 found.push_back({*line, nominal, order});
         }
     }

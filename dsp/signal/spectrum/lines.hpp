@@ -67,10 +67,8 @@ struct HumLine : SpectralLine {
     int order = 1;
 };
 
-/// Mains hum: narrow lines at the first 10 multiples of a frequency of the mains, and no orders of `fundamental` (0:
-/// unknown) unless that is the mains frequency itself. The strongest of the first three orders within half a bin and
-/// `mains_range` of m·50 or m·60 Hz determines the frequency of the mains; without one there is no hum. The others are
-/// within half a bin and 0.2 % of its multiples.
+/// Mains hum: narrow lines that `fit_mains` finds to be orders of one frequency, and no orders of `fundamental` (0:
+/// unknown) unless that is the mains frequency itself.
 std::vector<HumLine> find_hum(const Spectrum& spectrum, double fundamental);
 
 }  // namespace tactus::signal

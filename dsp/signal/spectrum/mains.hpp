@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <span>
 
 namespace tactus::signal {
 
@@ -15,6 +17,8 @@ inline constexpr int mains_frequencies[] = {50, 60};
 inline constexpr int max_mains_order = 12;
 /// Hum has one of its first orders: the mains itself, or those of transformers and rectifiers.
 inline constexpr int max_founding_order = 3;
+/// Of one record: lines of hum are multiples of one frequency, which wanders by less than this fraction meanwhile.
+inline constexpr double mains_drift = 4e-4;
 
 /// Order of mains of `nominal` Hz (1 … max_mains_order) that a line at `hz`, known to `uncertainty` Hz, may be; 0:
 /// none.
@@ -31,5 +35,37 @@ inline bool is_mains_order(double hz, double uncertainty = 0.0) {
         if (mains_order(hz, nominal, uncertainty) > 0) return true;
     return false;
 }
+
+/// Whether sources of hum have orders of the mains with this greatest common divisor: the mains itself, twice it
+/// (transformers, rectifiers of one phase) or six times it (of three phases).
+constexpr bool is_hum_family(int divisor) { return divisor == 1 || divisor == 2 || divisor == 6; }
+
+/// Whether the orders of `rate` may be a family of hum by their frequency, where the rate is known to `uncertainty` Hz.
+inline bool may_be_hum_rate(double rate, double uncertainty = 0.0) {
+    for (const int nominal : mains_frequencies)
+        if (const int order = mains_order(rate, nominal, uncertainty); order > 0 && is_hum_family(order)) return true;
+    return false;
+}
+
+/// A line that may be hum.
+struct MainsLine {
+    double frequency = 0.0, deviation = 0.0;  ///< Hz; standard deviation
+    double power = 0.0;
+};
+
+/// The frequency of the mains in one record, of which the lines of hum are multiples.
+struct MainsComb {
+    int nominal = 50;  ///< Hz
+    double frequency = 0.0, deviation = 0.0;  ///< Hz; standard deviation
+    int lines = 0;
+
+    /// Order (1 … max_mains_order) that a line at `hz` is, where its `deviation` and that of the mains allow it; 0: none.
+    int order_of(double hz, double line_deviation) const;
+};
+
+/// The comb of `nominal` Hz that most of the lines have in common, and of these the strongest: it has one of the first
+/// three orders within `mains_range`, and its orders are a family of hum. None if no lines are such a comb.
+/// `lines`: by frequency.
+std::optional<MainsComb> fit_mains(std::span<const MainsLine> lines, int nominal);
 
 }  // namespace tactus::signal

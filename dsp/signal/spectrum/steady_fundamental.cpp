@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <numbers>
 #include <numeric>
 
@@ -28,11 +29,12 @@ constexpr double bins_between = 5.0;  // neighbouring orders, at least: a line o
 
 constexpr std::size_t floor_block = 32;  // bins
 constexpr double explains_all = 0.9;  // fraction of the power
-// Of one record: lines of hum are multiples of one frequency, which wanders by less than this fraction meanwhile.
-constexpr double mains_drift = 4e-4;
-// Power relative to the strongest line of a comb from which another order, and an order of a fraction of its rate,
-// counts: weaker ones may be chance.
-constexpr double min_order_power = 5e-4, min_fraction_power = 0.01;
+// Power relative to the strongest line of a comb from which another order counts: weaker ones may be chance.
+constexpr double min_order_power = 5e-4;
+// Lines beside a comb that show a fraction of its rate: log-likelihood ratio to noise and relative power at least, and
+// the probability at most that they are near a fraction by chance, which is less for weak ones: there are more of them.
+constexpr double min_fraction_weight = 12.0, min_weak_power = 3e-4, min_fraction_power = 0.01;
+constexpr double max_fraction_chance = 0.25, max_weak_chance = 0.03;
 // Persistence of a line is measured in eighths of the record, over which the strokes of a saw average out. So does a
 // ring between strikes, which has the lines of a tone: combs of few strong lines must also be steady over pieces of few
 // periods, in which orders stay separate. Rings at 10 strikes per second with a quality of 10 have less than 0.95.
@@ -40,57 +42,60 @@ constexpr std::size_t eighths = 8, few_lines = 2;
 constexpr double periods_per_piece = 8.0;
 constexpr double min_persistence = 0.5, min_persistence_of_few = 0.95;
 constexpr int max_fraction = 12;
+// Courses of lines: half a band for each, in bins of the spectrum in which it is a narrow line.
+constexpr double course_bins = 4.0, min_steadiness = 0.85, min_steadiness_of_one = 0.97;
+constexpr std::size_t followed_lines = 2, max_courses = 3;
 
 struct NarrowLine {
     double frequency, deviation;  // Hz
-    double power, floor;          // per bin
+    double power, floor;  // per bin
     double weight;  // log-likelihood ratio, line to noise
-    bool is_hum;
+    bool is_hum, is_shared_hum;  // an order of the mains; of one that has other lines too
 };
-
-/// A frequency of the mains, known to `deviation` Hz.
-struct Mains {
-    double frequency, deviation;
-};
-
-std::vector<Mains> nominal_mains() {
-    std::vector<Mains> mains;
-    for (const int nominal : mains_frequencies) mains.push_back({static_cast<double>(nominal), 0.0});
-    return mains;
-}
 
 struct NarrowLines {
     std::vector<NarrowLine> found;  // heaviest first
-    std::vector<Mains> mains = nominal_mains();  // and those of which lines are first orders
+    std::vector<MainsComb> mains;
     double df = 0.0, all = 0.0;  // `all`: power above the noise, narrow or not
-    double hum = 0.0;            // power of lines at orders of the mains
-    double threshold = 0.0;      // power over the noise
+    double hum = 0.0;  // power of lines at orders of the mains
+    double threshold = 0.0;  // power over the noise
     double segments = 1.0;
     std::vector<double> floors;  // noise per block of bins
 };
 
-bool is_order_of(std::span<const Mains> mains, double frequency, double reach) {
-    return std::ranges::any_of(mains, [&](const Mains& one) {
-        const double order = std::round(frequency / one.frequency);
-        return order >= 1.0 && order <= max_mains_order &&
-               std::abs(frequency - order * one.frequency) < reach + order * one.deviation + mains_drift * frequency;
-    });
+bool is_order_of(std::span<const MainsComb> mains, double frequency, double deviation) {
+    return std::ranges::any_of(mains, [&](const MainsComb& one) { return one.order_of(frequency, deviation) > 0; });
 }
 
-/// Adds the frequencies of the mains of which a line is a first order, if the line locates them.
-void add_founded(const NarrowLine& line, std::vector<Mains>& mains) {
-    if (3.0 * line.deviation > mains_range * line.frequency) return;
-    for (const int nominal : mains_frequencies)
-        if (const int order = mains_order(line.frequency, nominal); order >= 1 && order <= max_founding_order)
-            mains.push_back({line.frequency / order, 3.0 * line.deviation / order});
+/// What may be hum among lines, by frequency: of each nominal frequency the comb of most lines and, beside a machine at
+/// such a rate, that of the others.
+std::vector<MainsComb> mains_among(const std::vector<MainsLine>& lines) {
+    std::vector<MainsComb> found;
+    for (const int nominal : mains_frequencies) {
+        const std::optional<MainsComb> most = fit_mains(lines, nominal);
+        if (!most) continue;
+        found.push_back(*most);
+        std::vector<MainsLine> others = lines;
+        std::erase_if(others, [&](const MainsLine& l) { return most->order_of(l.frequency, l.deviation) > 0; });
+        if (const std::optional<MainsComb> second = fit_mains(others, nominal)) found.push_back(*second);
+    }
+    return found;
 }
 
-/// Whether a comb of this rate begins where a family of hum does: with the mains, twice it (transformers, rectifiers of
-/// one phase) or six times it (of three phases).
-bool begins_as_hum(double rate, double reach) {
+/// Whether a rate may be that of hum. `beside`: what may be hum among the lines that are no orders of the rate.
+///
+/// A comb that begins as a family of hum does cannot be told from hum by its orders. Other lines show that it is a
+/// machine's if they are hum of a mains that is nearer to its nominal frequency, and measurably not that of the rate:
+/// a record has one mains. A comb at another order of the mains is told from hum by the absence of the first orders, or
+/// by their frequency.
+bool is_rate_of_hum(double rate, double deviation, std::span<const MainsComb> beside) {
+    if (is_order_of(beside, rate, deviation)) return true;
     return std::ranges::any_of(mains_frequencies, [&](int nominal) {
-        const int order = mains_order(rate, nominal, reach);
-        return order == 1 || order == 2 || order == 6;
+        const int order = mains_order(rate, nominal, 3.0 * deviation);
+        return order > 0 && is_hum_family(order) && std::ranges::none_of(beside, [&](const MainsComb& hum) {
+                   return hum.nominal == nominal &&
+                          std::abs(hum.frequency - nominal) < std::abs(rate / order - nominal);
+               });
     });
 }
 
@@ -159,9 +164,15 @@ NarrowLines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
         line.weight = out.segments * (snr - 1.0 - std::log(snr));
         out.found.push_back(line);
     }
-    for (const NarrowLine& line : out.found) add_founded(line, out.mains);
+    std::vector<MainsLine> by_frequency;  // as they were found
+    for (const NarrowLine& line : out.found) by_frequency.push_back({line.frequency, line.deviation, line.power});
+    out.mains = mains_among(by_frequency);
     for (NarrowLine& line : out.found) {
-        line.is_hum = is_order_of(out.mains, line.frequency, 3.0 * line.deviation);
+        for (const MainsComb& mains : out.mains) {
+            const bool is_order = mains.order_of(line.frequency, line.deviation) > 0;
+            line.is_hum |= is_order;
+            line.is_shared_hum |= is_order && mains.lines > 1;
+        }
         if (line.is_hum) out.hum += line.power;
     }
     std::ranges::sort(out.found, [](const NarrowLine& a, const NarrowLine& b) { return a.weight > b.weight; });
@@ -219,17 +230,21 @@ GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation
     return out;
 }
 
-/// Whether a line outside of a comb is an order of a fraction of its rate, and too strong for a coincidence.
-/// `strongest`: line of the comb, of that order.
+/// Whether a line outside of a comb is an order of a fraction of its rate that is no coincidence: the fractions that were
+/// tried before it leave so much room between them. `strongest`: line of the comb, of that order.
 bool is_order_of_fraction(const NarrowLine& line, const NarrowLine& strongest, int order, double df) {
-    if (line.is_hum || line.power < min_fraction_power * strongest.power) return false;
+    if (line.is_shared_hum || line.power < min_weak_power * strongest.power || line.weight < min_fraction_weight)
+        return false;
+    const double max_chance = line.power < min_fraction_power * strongest.power ? max_weak_chance : max_fraction_chance;
     const double rate = strongest.frequency / order, deviation = strongest.deviation / order;
+    double chance = 0.0;
     for (int divisor = 2; divisor <= max_fraction; ++divisor) {
         const double multiple = std::round(line.frequency * divisor / rate);
         const double place = multiple * rate / divisor;
-        if (multiple >= 1.0 && std::abs(line.frequency - place) <
-                                   0.1 * df + 3.0 * std::hypot(line.deviation, multiple * deviation / divisor))
-            return true;
+        const double reach = 0.1 * df + 3.0 * std::hypot(line.deviation, multiple * deviation / divisor);
+        for (int i = 1; i < divisor; ++i) chance += std::gcd(i, divisor) == 1 ? 2.0 * reach / rate : 0.0;
+        if (chance > max_chance) return false;
+        if (multiple >= 1.0 && std::abs(line.frequency - place) < reach) return true;
     }
     return false;
 }
@@ -243,7 +258,7 @@ double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double
         for (int order = 1; order < divisor * std::max(highest, 4); ++order) {
             const double place = frequency * order / divisor;
             if (order % divisor == 0 || place < 3.0 * lines.df || place > top) continue;
-            if (is_order_of(lines.mains, place, 1.5 * lines.df) || frequency / divisor < bins_between * lines.df)
+            if (is_order_of(lines.mains, place, 0.5 * lines.df) || frequency / divisor < bins_between * lines.df)
                 continue;
             const auto k = static_cast<std::size_t>(std::lround(place / lines.df));
             if (k + 2 >= spectrum.power.size()) break;
@@ -265,30 +280,6 @@ double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double
 double steady_persistence(double snr) {
     constexpr double of_line = 1.0 - 0.25 * std::numbers::pi;
     return 1.0 - of_line / (1.0 + 2.0 * of_line * snr);
-}
-
-/// How evenly a line is spread over the record: squared mean of its amplitude in pieces over the mean square, relative
-/// to that of a steady line in the same noise.
-double persistence_of(std::span<const double> samples, double rate, const NarrowLine& line, double df,
-                      std::size_t piece) {
-    if (piece == 0) return 0.0;
-    std::vector<std::complex<double>> kernel(piece);
-    for (std::size_t n = 0; n < piece; ++n) {
-        const double w =
-            1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(piece));
-        kernel[n] = std::polar(w, 2.0 * std::numbers::pi * line.frequency / rate * static_cast<double>(n));
-    }
-    double sum = 0.0, roots = 0.0, count = 0.0;
-    for (std::size_t from = 0; from + piece <= samples.size(); from += piece, count += 1.0) {
-        const std::span<const double> part = samples.subspan(from, piece);
-        const double mean = std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(piece);
-        std::complex<double> amplitude = 0.0;
-        for (std::size_t n = 0; n < piece; ++n) amplitude += kernel[n] * (part[n] - mean);
-        sum += std::norm(amplitude), roots += std::abs(amplitude);
-    }
-    // A bin of the spectrum and a piece differ in the noise that they contain.
-    const double snr = line.power / line.floor * df * static_cast<double>(piece) / rate;
-    return sum > 0.0 ? roots * roots / (count * sum) / steady_persistence(snr) : 0.0;
 }
 
 struct CombChoice {
@@ -318,6 +309,52 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
         if (one.common == 1 && one.score > out.best.score) out.best = one;
     for (const GrownComb& one : combs)
         if (one.score > out.rival.score && std::abs(one.frequency / out.best.frequency - 1.0) > 0.02) out.rival = one;
+    return out;
+}
+
+/// The frequency of a line over time.
+struct LineCourse {
+    std::vector<double> rates;  // Hz, one per interval
+    double interval = 0.0;  // s
+    /// Squared mean of the amplitude over the mean square: near 1 for one line, less for noise, for several lines in
+    /// the band and for a line that leaves it.
+    double steadiness = 0.0;
+};
+
+/// Frequency of what is within `half_band` of `frequency`, by the phase of its complex envelope.
+LineCourse course_of(std::span<const double> samples, double rate, double frequency, double half_band) {
+    LineCourse out;
+    const auto length = static_cast<std::size_t>(std::lround(2.0 * rate / half_band));
+    const std::size_t hop = std::max<std::size_t>(1, length / 8);
+    if (samples.size() < 2 * length || frequency < half_band) return out;
+    out.interval = static_cast<double>(hop) / rate;
+    const double turn = 2.0 * std::numbers::pi * frequency / rate;
+    std::vector<std::complex<double>> kernel(length);
+    for (std::size_t n = 0; n < length; ++n) {
+        const double place = static_cast<double>(n) - 0.5 * static_cast<double>(length - 1);
+        kernel[n] =
+            std::polar(1.0 + std::cos(2.0 * std::numbers::pi * place / static_cast<double>(length)), -turn * place);
+    }
+    double roots = 0.0, squares = 0.0;
+    std::complex<double> before = 0.0;
+    const auto count = samples.size() / hop;
+    for (std::size_t i = 0; i <= count; ++i) {
+        // At the ends, the kernel is cut off.
+        const std::size_t middle = i * hop, half = length / 2;
+        const std::size_t skipped = middle < half ? half - middle : 0;
+        std::complex<double> sum = 0.0;
+        for (std::size_t n = skipped; n < length && middle + n - half < samples.size(); ++n)
+            sum += kernel[n] * samples[middle + n - half];
+        if (i > 0) {
+            const double more = std::arg(sum * std::conj(before)) - turn * static_cast<double>(hop);
+            const double beyond = std::remainder(more, 2.0 * std::numbers::pi);
+            out.rates.push_back(frequency + beyond / (2.0 * std::numbers::pi * out.interval));
+        }
+        before = sum;
+        if (middle >= half && middle + half <= samples.size()) roots += std::abs(sum), squares += std::norm(sum);
+    }
+    const double whole = static_cast<double>((samples.size() - length) / hop + 1);
+    out.steadiness = squares > 0.0 ? roots * roots / (whole * squares) : 0.0;
     return out;
 }
 
@@ -369,9 +406,8 @@ SteadyFundamentalStream::SteadyFundamentalStream(double rate, std::size_t frames
 
 void SteadyFundamentalStream::push_thinned(std::span<const double> samples) {
     for (WelchStream<double>& level : levels_) level.push(samples);
-    if (keeps_)
-        kept_.insert(kept_.end(), samples.begin(),
-                     samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), max_kept - kept_.size())));
+    kept_.insert(kept_.end(), samples.begin(),
+                 samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), max_kept - kept_.size())));
 }
 
 void SteadyFundamentalStream::push(std::span<const double> samples) {
@@ -399,12 +435,48 @@ void SteadyFundamentalStream::gap() {
     history_.clear();
     phase_ = 0;
     for (WelchStream<double>& level : levels_) level.forget_waiting();
-    keeps_ = kept_.empty();
+    if (kept_.size() > pieces_.back()) pieces_.push_back(kept_.size());
+}
+
+std::span<const double> SteadyFundamentalStream::piece(std::size_t index) const {
+    const std::size_t end = index + 1 < pieces_.size() ? pieces_[index + 1] : kept_.size();
+    return std::span(kept_).subspan(pieces_[index], end - pieces_[index]);
+}
+
+std::span<const double> SteadyFundamentalStream::longest_piece() const {
+    std::span<const double> longest;
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+        if (piece(i).size() > longest.size()) longest = piece(i);
+    return longest;
+}
+
+/// How evenly a line is spread over the record: squared mean of its amplitude in parts of `length` samples over the
+/// mean square, relative to that of a steady line in the same noise, of which a part has `snr` times the power.
+double SteadyFundamentalStream::persistence(double frequency, double snr, std::size_t length) const {
+    length = std::min(length, longest_piece().size());
+    if (length == 0) return 0.0;
+    std::vector<std::complex<double>> kernel(length);
+    for (std::size_t n = 0; n < length; ++n) {
+        const double w =
+            1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(length));
+        kernel[n] = std::polar(w, 2.0 * std::numbers::pi * frequency / rate_ * static_cast<double>(n));
+    }
+    double sum = 0.0, roots = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+        for (std::span<const double> rest = piece(i); rest.size() >= length;
+             rest = rest.subspan(length), count += 1.0) {
+            const std::span<const double> part = rest.first(length);
+            const double mean = std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(length);
+            std::complex<double> amplitude = 0.0;
+            for (std::size_t n = 0; n < length; ++n) amplitude += kernel[n] * (part[n] - mean);
+            sum += std::norm(amplitude), roots += std::abs(amplitude);
+        }
+    return sum > 0.0 ? roots * roots / (count * sum) / steady_persistence(snr) : 0.0;
 }
 
 SteadyFundamental SteadyFundamentalStream::estimate() const {
     SteadyFundamental out;
-    const double top = factor_ > 1 ? 0.38 * rate_ : 0.48 * rate_;
+    const double top = this->top();
     std::vector<NarrowLines> all(levels_.size());
     CombChoice chosen;
     // Shorter segments are used only for rates that wander: they blur lines that longer ones resolve.
@@ -445,14 +517,12 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     std::vector<int> orders;
     int common = 0;  // greatest common divisor of the orders that are no hum
     std::vector<double> others;
-    bool has_hum = false;  // beside the comb
-    std::vector<Mains> beside = nominal_mains();
+    std::vector<MainsLine> beside;  // the comb
     bool is_over_hum = false;  // the rate is a multiple of a line that counts as hum
     for (std::size_t i = 0; i < std::min(lines.found.size(), max_tested); ++i) {
         const NarrowLine& line = lines.found[i];
         if (comb.order[i] == 0) {
-            has_hum |= line.is_hum;
-            add_founded(line, beside);
+            beside.push_back({line.frequency, line.deviation, line.power});
             for (int divisor = 2; divisor <= 12 && line.is_hum; ++divisor)
                 is_over_hum |= std::abs(divisor * line.frequency - comb.frequency) < 3.0 * divisor * line.deviation;
             if (!line.is_hum) out.foreign = std::max(out.foreign, line.weight);
@@ -468,24 +538,28 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         out.strong_lines += comb.order[i] > 0 && line.power >= min_order_power * strongest->power;
         out.may_be_multiple |= comb.order[i] == 0 && is_order_of_fraction(line, *strongest, strongest_order, lines.df);
     }
-    // A machine at another order of the mains is distinguished from hum by the absence of the first orders, or by their
-    // frequency.
-    const double reach = 3.0 * strongest->deviation / strongest_order;
-    out.is_at_mains = begins_as_hum(comb.frequency, reach) || (has_hum && is_order_of(beside, comb.frequency, reach));
-    // If the orders that are no hum have a common divisor, only lines of hum support this rate, and the machine's may
-    // be the multiple. This does not apply to a comb at the mains, of which every order may be hum.
-    out.may_combine_hum = (common > 1 && !out.is_at_mains) || is_over_hum;
+    std::ranges::sort(beside, {}, &MainsLine::frequency);
+    const double deviation = strongest->deviation / strongest_order, reach = 3.0 * deviation;
+    out.is_at_mains = is_rate_of_hum(comb.frequency, deviation, mains_among(beside));
+    // If the orders that are no hum have a common divisor, or if there are none, only lines of hum support this rate, and
+    // the machine's may be the multiple. This does not apply to a comb at the mains: every order may be hum, or none is
+    // if other lines show the hum.
+    const bool is_single_family = may_be_hum_rate(comb.frequency, reach);
+    out.may_combine_hum = (common != 1 && !out.is_at_mains && !is_single_family) || is_over_hum;
     out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
     const std::size_t eighth = kept_.size() / eighths;
     const auto few_periods = static_cast<std::size_t>(std::ceil(periods_per_piece * rate_ / comb.frequency));
-    out.persistence = persistence_of(kept_, rate_, *strongest, lines.df,
-                                     out.strong_lines > few_lines ? eighth : std::min(eighth, few_periods));
+    const std::size_t length = out.strong_lines > few_lines ? eighth : std::min(eighth, few_periods);
+    // A bin of the spectrum and a part of the record differ in the noise that they contain.
+    out.persistence =
+        persistence(strongest->frequency,
+                    strongest->power / strongest->floor * lines.df * static_cast<double>(length) / rate_, length);
     out.is_persistent = out.persistence >= (out.strong_lines > few_lines ? min_persistence : min_persistence_of_few);
     out.confidence_without_hum = probability_of(out);
     out.confidence = out.is_at_mains ? 0.0 : out.confidence_without_hum;
     if (out.is_sharp && !kept_.empty()) {
-        const HarmonicFit fit = fit_harmonics(kept_, rate_, comb.frequency, orders, others);
+        const HarmonicFit fit = fit_harmonics(longest_piece(), rate_, comb.frequency, orders, others);
         if (std::abs(fit.frequency - comb.frequency) * comb.highest < lines.df) {
             out.frequency = fit.frequency;
             out.deviation = fit.deviation;
@@ -495,7 +569,12 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
 }
 
 SteadyFundamental SteadyFundamentalStream::estimate_along(std::span<const double> course, double interval) const {
-    if (course.empty() || kept_.size() < 64) return {};
+    return estimate_along(piece(0), course, interval);
+}
+
+SteadyFundamental SteadyFundamentalStream::estimate_along(std::span<const double> samples,
+                                                          std::span<const double> course, double interval) const {
+    if (course.empty() || samples.size() < 64) return {};
     const double mean = std::accumulate(course.begin(), course.end(), 0.0) / static_cast<double>(course.size());
     const auto rate_at = [&](double t) {
         const double place = std::clamp(t / interval - 0.5, 0.0, static_cast<double>(course.size() - 1));
@@ -504,19 +583,44 @@ SteadyFundamental SteadyFundamentalStream::estimate_along(std::span<const double
         return std::lerp(course[before], course[after], place - static_cast<double>(before)) / mean;
     };
     std::vector<double> warped;
-    warped.reserve(kept_.size());
+    warped.reserve(samples.size());
     const double last =
-        std::min(static_cast<double>(kept_.size() - 3), static_cast<double>(course.size()) * interval * rate_);
+        std::min(static_cast<double>(samples.size() - 3), static_cast<double>(course.size()) * interval * rate_);
     // Steps of equal angle, with cubic interpolation (Catmull and Rom 1974).
     for (double at = 1.0; at < last; at += 1.0 / rate_at((at + 0.5) / rate_)) {
         const auto n = static_cast<std::size_t>(at);
         const double u = at - static_cast<double>(n);
-        const double a = kept_[n - 1], b = kept_[n], c = kept_[n + 1], d = kept_[n + 2];
+        const double a = samples[n - 1], b = samples[n], c = samples[n + 1], d = samples[n + 2];
         warped.push_back(b + 0.5 * u * (c - a + u * (2.0 * a - 5.0 * b + 4.0 * c - d + u * (3.0 * (b - c) + d - a))));
     }
     SteadyFundamentalStream still(rate_, warped.size(), lowest_, highest_);
     still.push(warped);
     return still.estimate();
+}
+
+SteadyFundamental SteadyFundamentalStream::estimate_straightened() const {
+    const std::span<const double> samples = longest_piece();
+    std::vector<LineCourse> courses;
+    for (std::size_t level = 1; level < levels_.size(); ++level) {
+        NarrowLines lines = lines_of(levels_[level].spectrum(), top(), false);
+        std::ranges::sort(lines.found, std::greater<>(), &NarrowLine::power);
+        // Hum is steady; along its noise, the lines of a machine and its own would only become wider.
+        std::erase_if(lines.found, [](const NarrowLine& line) { return line.is_hum; });
+        for (std::size_t i = 0; i < std::min(followed_lines, lines.found.size()); ++i)
+            if (LineCourse one = course_of(samples, rate_, lines.found[i].frequency, course_bins * lines.df);
+                one.steadiness > min_steadiness)
+                courses.push_back(std::move(one));
+    }
+    std::ranges::sort(courses, std::greater<>(), &LineCourse::steadiness);
+    SteadyFundamental best;
+    for (std::size_t i = 0; i < std::min(max_courses, courses.size()); ++i) {
+        const SteadyFundamental one = estimate_along(samples, courses[i].rates, courses[i].interval);
+        if (!one.is_sharp || (one.strong_lines < 2 && courses[i].steadiness < min_steadiness_of_one)) continue;
+        if (one.score * one.explained > best.score * best.explained) best = one;
+    }
+    best.deviation = 0.0;
+    best.is_sharp = false;
+    return best;
 }
 
 }  // namespace tactus::signal

@@ -65,9 +65,19 @@ public:
     /// constant at its mean: `course` holds the rate (Hz, > 0) at the middle of each `interval` s; linear in between.
     /// Order tracking: a line test after it separates a rate from its half as well as for a steady machine. Allocates.
     SteadyFundamental estimate_along(std::span<const double> course, double interval) const;
+    /// The same along the course of a strong line of the longest piece, by its phase: resolves faster changes of the
+    /// rate than sections do. Other lines that become sharp with it are orders of the same machine; without any, the line
+    /// must be as steady as a tone. No rate if no line can be followed. Allocates.
+    SteadyFundamental estimate_straightened() const;
 
 private:
     void push_thinned(std::span<const double> samples);
+    std::span<const double> piece(std::size_t index) const;
+    std::span<const double> longest_piece() const;
+    double persistence(double frequency, double snr, std::size_t length) const;
+    double top() const { return factor_ > 1 ? 0.38 * rate_ : 0.48 * rate_; }
+    SteadyFundamental estimate_along(std::span<const double> samples, std::span<const double> course,
+                                     double interval) const;
 
     double lowest_, highest_;
     std::size_t factor_;  // of the reduction of the sample rate
@@ -75,8 +85,8 @@ private:
     std::vector<double> taps_, history_, thinned_;
     std::size_t phase_ = 0;
     std::vector<WelchStream<double>> levels_;  // longest segments first
-    std::vector<double> kept_;  // the first samples, up to a gap
-    bool keeps_ = true;
+    std::vector<double> kept_;  // the first samples
+    std::vector<std::size_t> pieces_{0};  // where the pieces between gaps begin in `kept_`
 };
 
 }  // namespace tactus::signal

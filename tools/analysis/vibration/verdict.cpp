@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/vibration/verdict.hpp"
 
-#include "dsp/signal/spectrum/mains.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +13,7 @@ namespace {
 constexpr double coherent = 0.5;
 constexpr double max_course_db = 3.0;  // rms of the level difference over time of what are copies
 
-constexpr double line_deviation = 0.05;  // Hz, of the frequency of a line
+constexpr double line_deviation = 0.05;  // Hz, standard deviation of the frequency of a line
 
 /// Order of a fundamental; 0: none.
 int order_of(double hz, double fundamental_hz) {
@@ -46,8 +44,7 @@ bool Verdict::is_judged() const { return failed() != std::vector<std::string>{"a
 
 std::string Verdict::words() const {
     const std::string band = fmt::format("{:.0f} to {:.0f} Hz", lowest, highest);
-    if (!is_judged())
-        return fmt::format("Cannot be judged, {}: no line or band stands above the noise of both", band);
+    if (!is_judged()) return fmt::format("Cannot be judged, {}: no line or band stands above the noise of both", band);
     if (!passed()) return fmt::format("Not the same vibration, {}", band);
     if (time.empty()) return fmt::format("Same mean spectrum, {}; time is not judged", band);
     return fmt::format("Same mean spectrum and {}, {}{}", time, band,
@@ -119,20 +116,16 @@ std::string uncertain_order(int order, double hz) {
     return fmt::format("order {} of {:.4g} Hz, or mains hum", order, hz);
 }
 
-int mains_of(std::span<const signal::SpectralLine> lines) {
-    int found = 0;
-    std::ptrdiff_t most = 0;
-    for (const int mains : signal::mains_frequencies) {
-        const auto count = [&](int last) {
-            return std::ranges::count_if(lines, [&](const signal::SpectralLine& line) {
-                const int order = signal::mains_order(line.frequency, mains, line_deviation);
-                return order >= 1 && order <= last;
-            });
-        };
-        if (const std::ptrdiff_t all = count(signal::max_mains_order);
-            count(signal::max_founding_order) > 0 && all > most)
-            found = mains, most = all;
-    }
+std::optional<signal::MainsComb> mains_of(std::span<const signal::SpectralLine> lines, double fundamental_hz) {
+    std::vector<signal::MainsLine> others;
+    for (const signal::SpectralLine& line : lines)
+        if (!(fundamental_hz > 0.0) || order_of(line.frequency, fundamental_hz) == 0)
+            others.push_back({line.frequency, line_deviation, line.power});
+    std::ranges::sort(others, {}, &signal::MainsLine::frequency);
+    std::optional<signal::MainsComb> found;
+    for (const int nominal : signal::mains_frequencies)
+        if (const auto mains = signal::fit_mains(others, nominal); mains && (!found || mains->lines > found->lines))
+            found = mains;
     return found;
 }
 
@@ -141,24 +134,23 @@ std::string RecordRates::name_of(double hz) const {
         if (const int order = order_of(hz, fundamental_hz); order > 0) return fmt::format("order {}", order);
     if (hum_hz > 0.0)
         if (const int order = order_of(hz, hum_hz); order > 0) return uncertain_order(order, hum_hz);
-    if (mains_hz <= 0) return "";
-    const int order = signal::mains_order(hz, mains_hz, line_deviation);
+    const int order = mains ? mains->order_of(hz, line_deviation) : 0;
     if (order == 0) return "";
-    if (!(fundamental_hz > 0.0)) return uncertain_order(order, mains_hz);
-    return order == 1 ? fmt::format("mains hum, {} Hz", mains_hz)
-                      : fmt::format("mains hum, {} × {} Hz", order, mains_hz);
+    if (!(fundamental_hz > 0.0)) return uncertain_order(order, mains->nominal);
+    return order == 1 ? fmt::format("mains hum, {} Hz", mains->nominal)
+                      : fmt::format("mains hum, {} × {} Hz", order, mains->nominal);
 }
 
 LineNames::LineNames(const signal::Comparison& c)
-    : reference_{c.reference_hz, c.reference_hum_hz, 0},
-      output_{c.output_hz > 0.0 || c.output_hum_hz > 0.0 ? c.output_hz : c.reference_hz, c.output_hum_hz, 0} {
-    const auto mains = [&](const std::vector<signal::SpectralLine>& own) {
+    : reference_{c.reference_hz, c.reference_hum_hz, {}},
+      output_{c.output_hz > 0.0 || c.output_hum_hz > 0.0 ? c.output_hz : c.reference_hz, c.output_hum_hz, {}} {
+    const auto set_mains = [&](RecordRates& rates, const std::vector<signal::SpectralLine>& own) {
         std::vector<signal::SpectralLine> all = c.lines.in_both;
         all.insert(all.end(), own.begin(), own.end());
-        return mains_of(all);
+        rates.mains = mains_of(all, rates.fundamental_hz);
     };
-    reference_.mains_hz = mains(c.lines.only_in_reference);
-    output_.mains_hz = mains(c.lines.only_in_output);
+    set_mains(reference_, c.lines.only_in_reference);
+    set_mains(output_, c.lines.only_in_output);
 }
 
 }  // namespace tactus::analysis

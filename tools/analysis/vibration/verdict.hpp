@@ -4,7 +4,9 @@
 
 #include "assets/table/thresholds.hpp"
 #include "dsp/signal/spectrum/comparison.hpp"
+#include "dsp/signal/spectrum/mains.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,9 +39,9 @@ struct Verdict {
 
 Verdict judge(const signal::Comparison& comparison, double level_gap_db, const table::Thresholds& thresholds);
 
-/// Frequency of the mains whose hum is among the lines of a record: 50 or 60 Hz, whichever has more of them; 0 if none
-/// is one of its first three orders.
-int mains_of(std::span<const signal::SpectralLine> lines);
+/// The mains whose hum is among the lines of a record: of 50 or 60 Hz, whichever has more of them. Orders of
+/// `fundamental_hz` (0: none) are a machine's.
+std::optional<signal::MainsComb> mains_of(std::span<const signal::SpectralLine> lines, double fundamental_hz);
 
 /// "order 2 of 50 Hz, or mains hum": a rate at the mains, of a machine or of hum.
 std::string uncertain_order(int order, double hz);
@@ -48,7 +50,7 @@ std::string uncertain_order(int order, double hz);
 struct RecordRates {
     double fundamental_hz = 0.0;
     double hum_hz = 0.0;  ///< a rate that may be a machine's or hum
-    int mains_hz = 0;     ///< 50 or 60
+    std::optional<signal::MainsComb> mains;
 
     /// "order 2" of the fundamental, "order 2 of 50 Hz, or mains hum" of a rate that may be hum, "mains hum, 3 × 50 Hz"
     /// beside a machine of another rate, or "". Without a fundamental nothing shows that an order of the mains is hum.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/core/random.hpp"
+#include "dsp/signal/spectrum/mains.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +117,15 @@ struct MachineCase {
                         kept += weights[i];
                 rival = std::max(rival, kept);
             }
+        // Hum of a mains that is up to `mains_range` off has the orders of a machine at its frequency, at twice and at
+        // six times it. A rate that moves is a machine's, and so is one beside hum of another frequency.
+        const double resolution = 1.0 / seconds;
+        for (const int nominal : signal::mains_frequencies) {
+            const int order = signal::mains_order(told, nominal);
+            const bool is_off = has_hum && nominal == static_cast<int>(mains) &&
+                                std::abs(told - order * mains) > resolution + signal::mains_drift * told;
+            if (order > 0 && signal::is_hum_family(order) && wander < signal::mains_drift && !is_off) rival = all;
+        }
         llr = told * seconds >= 2.0 ? all - rival : 0.0;
     }
 

@@ -184,10 +184,10 @@ TEST_CASE("a resonance that is struck is no certain steady tone, whatever its ra
     struct Ring {
         double hz, quality, strikes;  // strikes per second; 0: at random, 3 per second
     };
-    for (const Ring& ring : {Ring{211.0, 40.0, 1.0}, Ring{211.0, 40.0, 2.0}, Ring{211.0, 40.0, 0.5},
-                             Ring{211.0, 40.0, 2.7}, Ring{211.0, 40.0, 1.3}, Ring{211.0, 40.0, 0.0},
-                             Ring{95.0, 20.0, 1.0}, Ring{330.0, 60.0, 1.0}, Ring{487.0, 80.0, 2.0},
-                             Ring{150.0, 30.0, 1.0}})
+    for (const Ring& ring :
+         {Ring{211.0, 40.0, 1.0}, Ring{211.0, 40.0, 2.0}, Ring{211.0, 40.0, 0.5}, Ring{211.0, 40.0, 2.7},
+          Ring{211.0, 40.0, 1.3}, Ring{211.0, 40.0, 0.0}, Ring{95.0, 20.0, 1.0}, Ring{330.0, 60.0, 1.0},
+          Ring{487.0, 80.0, 2.0}, Ring{150.0, 30.0, 1.0}})
         for (std::uint64_t seed = 1; seed <= 3; ++seed) {
             const Random random{seed};
             constexpr double rate = 8000.0;
@@ -197,10 +197,9 @@ TEST_CASE("a resonance that is struck is no certain steady tone, whatever its ra
             double before = 0.0, last = 0.0;
             for (std::size_t i = 0; i < x.size(); ++i) {
                 const double t = static_cast<double>(i) / rate;
-                const bool strikes =
-                    ring.strikes > 0.0
-                        ? i == 0 || std::floor(t * ring.strikes) > std::floor((t - 1.0 / rate) * ring.strikes)
-                        : random.uniform(1'000'000 + i) < 3.0 / rate;
+                const bool strikes = ring.strikes > 0.0 ? i == 0 || std::floor(t * ring.strikes) >
+                                                                        std::floor((t - 1.0 / rate) * ring.strikes)
+                                                        : random.uniform(1'000'000 + i) < 3.0 / rate;
                 const double y = (strikes ? 1.0 : 0.0) + 2.0 * decay * std::cos(angle) * last - decay * decay * before;
                 before = last, last = y;
                 x[i] = y + 0.002 * random.normal(i);
@@ -319,6 +318,105 @@ TEST_CASE("a rate at the mains is never certain, whatever its orders and the fre
     // A machine 0.8 % away from it is no hum.
     for (const double hz : {50.4, 59.5, 100.8, 121.0})
         CHECK(signal::find_fundamental(std::span<const double>(record(hz, spectra[2])), 8000.0).is_certain());
+}
+
+TEST_CASE("a machine at an order of the mains that no family of hum begins with is certain, however many its orders") {
+    for (const double hz : {74.8, 149.3, 150.0, 150.7})
+        for (const std::size_t orders : {3U, 4U, 5U, 6U, 9U}) {
+            const Random random{17};
+            std::vector<double> x(6 * 8000);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                x[i] = 0.005 * random.normal(i);
+                for (std::size_t k = 1; k <= orders; ++k)
+                    x[i] += std::sin(2.0 * std::numbers::pi * hz * static_cast<double>(k * i) / 8000.0) /
+                            static_cast<double>(k);
+            }
+            const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(x), 8000.0);
+            CAPTURE(hz, orders, found.frequency, found.confidence);
+            CHECK(found.frequency == Approx(hz).margin(0.01));
+            CHECK(found.is_certain());
+        }
+}
+
+TEST_CASE("a rate beside the mains is a machine's where lines of hum show another frequency of the mains") {
+    struct Pair {
+        double machine, mains;
+        bool is_certain;
+    };
+    for (const Pair& one : {Pair{100.4, 49.98, true}, Pair{99.6, 50.01, true}, Pair{100.02, 50.0, false},
+                            Pair{100.1, 49.9, false}, Pair{100.4, 60.0, false}}) {
+        const Random random{23};
+        std::vector<double> x(20 * 4000);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double turns = static_cast<double>(i) / 4000.0;
+            x[i] = 0.01 * random.normal(i);
+            for (int k = 1; k <= 6; ++k) x[i] += std::sin(2.0 * std::numbers::pi * k * one.machine * turns + k) / k;
+            for (int k = 1; k <= 3; k += 2) x[i] += 0.2 / k * std::sin(2.0 * std::numbers::pi * k * one.mains * turns);
+        }
+        const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(x), 4000.0);
+        CAPTURE(one.machine, one.mains, found.frequency, found.confidence);
+        CHECK(found.is_certain() == one.is_certain);
+        if (one.is_certain) CHECK(found.frequency == Approx(one.machine).margin(0.01));
+    }
+}
+
+TEST_CASE("two strong lines at orders of two mains are no orders of a machine at their common fraction") {
+    // 60 and 100 Hz are orders 3 and 5 of 20 Hz.
+    const Random random{29};
+    std::vector<double> x(8 * 4000);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / 4000.0;
+        x[i] = std::sin(100.05 * angle) + 0.5 * std::sin(60.0 * angle) + 0.1 * std::sin(120.0 * angle) +
+               0.02 * random.normal(i);
+    }
+    const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(x), 4000.0);
+    CAPTURE(found.frequency);
+    CHECK_FALSE(found.is_certain());
+}
+
+TEST_CASE("lines of a rate that wanders within the half second of a section are followed by their phase") {
+    int certain = 0;
+    constexpr int machines = 12;
+    const Random random{41};
+    for (std::uint64_t m = 0; m < machines; ++m) {
+        const double hz = std::lerp(25.0, 90.0, random.uniform(m)), wander = 0.005 + 0.01 * random.uniform(100 + m);
+        constexpr double rate = 6400.0;
+        std::vector<double> x(static_cast<std::size_t>(8.0 * rate));
+        double phase = 0.0;
+        // The second order is ten times as strong as the odd ones, which short segments do not resolve.
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double t = static_cast<double>(i) / rate;
+            phase += 2.0 * std::numbers::pi * hz / rate * (1.0 + wander * std::sin(2.0 * std::numbers::pi * 1.3 * t));
+            x[i] = std::sin(2.0 * phase) + 0.1 * std::sin(11.0 * phase) + 0.1 * std::sin(13.0 * phase) +
+                   0.02 * random.normal(1000 + m * x.size() + i);
+        }
+        const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(x), rate);
+        CAPTURE(hz, wander, found.frequency, found.confidence);
+        certain += found.is_certain();
+        if (found.is_certain()) CHECK(found.frequency == Approx(hz).epsilon(0.005));
+    }
+    CHECK(certain >= machines * 3 / 4);
+}
+
+TEST_CASE("the persistence of a line is judged in all pieces of a record") {
+    // Steady before a gap, struck once per second after it: no certain steady tone.
+    const auto certain = [](bool is_struck) {
+        const Random random{6};
+        signal::FundamentalStream stream(8000.0, 80000);
+        for (int part = 0; part < 2; ++part) {
+            std::vector<double> x(part == 0 ? 16000 : 64000);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double t = static_cast<double>(i) / 8000.0;
+                const double level = part == 1 && is_struck ? std::exp(-std::fmod(t, 1.0) / 0.1) : 1.0;
+                x[i] = level * std::sin(2.0 * std::numbers::pi * 211.0 * t) + 0.002 * random.normal(80000U * part + i);
+            }
+            stream.push(x);
+            stream.gap();
+        }
+        return stream.estimate().is_certain();
+    };
+    CHECK(certain(false));
+    CHECK_FALSE(certain(true));
 }
 
 TEST_CASE("a record in pieces has the fundamental of the whole") {

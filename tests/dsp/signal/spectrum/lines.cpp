@@ -2,9 +2,11 @@
 #include "dsp/signal/spectrum/lines.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/live_fundamental.hpp"
+#include "dsp/signal/spectrum/mains.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 using namespace tactus;
@@ -159,6 +161,31 @@ TEST_CASE("hum is found where the mains is 0.4 % off, with its high orders") {
         }
         CHECK(orders == std::vector<int>{1, 3, 10});
     }
+}
+
+TEST_CASE("a line near an order of the mains is no hum where the other lines show another frequency of it") {
+    Record record(8000.0, 10.0);
+    record.saw(233.0, 0.1).noise(0.02, 1).tone(49.95, 0.05).tone(149.85, 0.05).tone(251.1, 0.1).tone(448.0, 0.1);
+    std::vector<int> orders;
+    for (const signal::HumLine& line : signal::find_hum(record.spectrum(16384), 233.0)) orders.push_back(line.order);
+    CHECK(orders == std::vector<int>{1, 3});
+}
+
+TEST_CASE("the frequency of the mains is that of most lines, and orders that no source of hum has are none") {
+    const auto lines = [](std::initializer_list<double> frequencies) {
+        std::vector<signal::MainsLine> all;
+        for (const double hz : frequencies) all.push_back({hz, 0.02, 1.0});
+        return all;
+    };
+    const auto mains = signal::fit_mains(lines({49.9, 100.4, 149.7, 200.8, 249.5}), 50);
+    REQUIRE(mains);
+    CHECK(mains->frequency == Approx(49.9).margin(0.01));
+    CHECK(mains->lines == 3);
+    CHECK(mains->order_of(249.5, 0.02) == 5);
+    CHECK(mains->order_of(200.8, 0.02) == 0);
+    CHECK_FALSE(signal::fit_mains(lines({150.0, 300.0, 450.0}), 50));
+    CHECK_FALSE(signal::fit_mains(lines({49.6, 200.0, 250.0}), 50));
+    CHECK(signal::fit_mains(lines({100.0, 200.0, 300.0}), 50)->order_of(600.0, 0.02) == 12);
 }
 
 TEST_CASE("a rate that is the mains itself counts as hum, orders of a saw at 150 Hz do not") {

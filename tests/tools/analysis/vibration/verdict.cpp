@@ -81,18 +81,21 @@ TEST_CASE("a line that only one has counts by its level beside the reference's s
 }
 
 TEST_CASE("a line is named after the saw's order first, then after the mains") {
-    const RecordRates saw{233.0, 0.0, 50};
+    const RecordRates saw{233.0, 0.0, signal::MainsComb{50, 49.87, 0.01, 3}};
     CHECK(saw.name_of(466.1) == "order 2");
-    CHECK(saw.name_of(50.02) == "mains hum, 50 Hz");
+    CHECK(saw.name_of(49.9) == "mains hum, 50 Hz");
     CHECK(saw.name_of(149.6) == "mains hum, 3 × 50 Hz");
+    CHECK(saw.name_of(150.3).empty());
     CHECK(saw.name_of(77.0).empty());
-    CHECK(RecordRates{50.0, 0.0, 50}.name_of(100.0) == "order 2");
+    CHECK(RecordRates{50.0, 0.0, signal::MainsComb{50, 50.0, 0.01, 3}}.name_of(100.0) == "order 2");
     CHECK(RecordRates{}.name_of(100.0).empty());
 }
 
 TEST_CASE("a line that may be hum or a machine's is named as both") {
-    CHECK(RecordRates{0.0, 99.8, 50}.name_of(199.6) == "order 2 of 99.8 Hz, or mains hum");
-    CHECK(RecordRates{0.0, 0.0, 60}.name_of(180.0) == "order 3 of 60 Hz, or mains hum");
+    CHECK(RecordRates{0.0, 99.8, signal::MainsComb{50, 49.9, 0.01, 2}}.name_of(199.6) ==
+          "order 2 of 99.8 Hz, or mains hum");
+    CHECK(RecordRates{0.0, 0.0, signal::MainsComb{60, 60.0, 0.01, 2}}.name_of(180.0) ==
+          "order 3 of 60 Hz, or mains hum");
     signal::Comparison c = good();
     c.reference_hz = 51.0, c.output_hum_hz = 50.0;
     c.lines.only_in_output = {line(50.0, -20.0), line(150.0, -20.0)};
@@ -111,6 +114,25 @@ TEST_CASE("the lines of one record are hum of one mains, within the range of its
     CHECK(names.of_reference(600.0) == "mains hum, 12 × 50 Hz");
     CHECK(names.of_output(199.2) == "mains hum, 4 × 50 Hz");
     for (const double hz : {151.2, 900.0}) CHECK(names.of_output(hz).empty());
-    CHECK(mains_of(std::vector{line(60.02, -30.0), line(180.0, -30.0), line(300.0, -30.0)}) == 60);
-    CHECK(mains_of(std::vector{line(400.0, -30.0)}) == 0);
+    CHECK(mains_of(std::vector{line(60.02, -30.0), line(180.0, -30.0), line(300.0, -30.0)}, 0.0)->nominal == 60);
+    CHECK_FALSE(mains_of(std::vector{line(400.0, -30.0)}, 0.0));
+    // Sources of hum have no family of orders 3, 6, 9.
+    CHECK_FALSE(mains_of(std::vector{line(150.0, -30.0), line(300.0, -30.0), line(450.0, -30.0)}, 0.0));
+}
+
+TEST_CASE("lines off the frequency of the mains that the other lines show are no hum") {
+    signal::Comparison c = good();
+    c.reference_hz = c.output_hz = 233.0;
+    // Within 0.5 % of its orders, but no orders of 49.9 Hz.
+    const std::vector<double> beside{251.0, 350.9, 448.1};
+    for (const double hz : {49.9, 99.8, 299.4}) c.lines.only_in_output.push_back(line(hz, -20.0));
+    for (const double hz : beside) c.lines.only_in_output.push_back(line(hz, -10.0));
+    const LineNames names(c);
+    CHECK(names.of_output(49.9) == "mains hum, 50 Hz");
+    CHECK(names.of_output(299.4) == "mains hum, 6 × 50 Hz");
+    for (const double hz : beside) CHECK(names.of_output(hz).empty());
+    // A machine at the mains does not draw the hum beside it to its rate.
+    const std::vector<signal::SpectralLine> both{line(49.97, -30.0), line(100.4, 0.0), line(149.91, -30.0),
+                                                 line(200.8, 0.0), line(301.2, 0.0)};
+    CHECK(mains_of(both, 100.4)->frequency == Approx(49.97).margin(0.01));
 }
