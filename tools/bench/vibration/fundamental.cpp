@@ -109,7 +109,8 @@ Verb fundamental_verb() {
             [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<FundamentalChoice>();
                 verb.add("--machines", choice->machines, "number of machines").shows_default().range(1, 1000000);
-                verb.add("--first", choice->first, "seed of the first; 0 to 999 set the thresholds")
+                verb.add("--first", choice->first,
+                         "seed of the first; below 9000 and 20000 to 31499 set the thresholds")
                     .shows_default()
                     .range(0, 1000000000);
                 verb.flag("--json", choice->json, "as JSON");
