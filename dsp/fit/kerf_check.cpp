@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -24,7 +25,7 @@ constexpr double rim = 1.2e-3;  // m: nearer to the face the cortex is rounded
 constexpr double short_reach = 5e-3, middle_reach = 7e-3, long_reach = 9e-3;
 constexpr double half_width = 1.5e-3;  // m, of a strip
 constexpr double alike = 0.8;  // least cosine between the normals of a strip
-constexpr std::size_t max_strips = 48, min_in_strip = 12, max_paint = 400;
+constexpr std::size_t max_strips = 48, min_in_strip = 12, max_paint = 400, max_centres = 200;
 constexpr int independent = 8;  // strips around a bone that tell something of their own
 constexpr double widest = 6e-3;  // m: errors of the opening that are still seen
 constexpr double max_error = 0.5e-3;  // m, of the opening
@@ -32,9 +33,12 @@ constexpr double max_spread = 1e-3;  // m: what a contour says that knows less m
 // Of the standard deviation. Measured, not derived: with `tactus-bench shafts --count 20`, with and without chips, none of
 // 40 that had lost 0.8 mm passed; of 40 whole ones with chips, none was refused for a kerf.
 constexpr double share_of_spread = 0.5;
-constexpr double nearby = 3e-3;  // m: relief is measured about planes through the points within this distance
+constexpr double nearby = 3e-3;  // m: relief is measured about surfaces through the points within this distance
 constexpr double max_touch = 1e-3;  // m: farther from each other, faces do not touch
 constexpr double flat_relief = 0.1e-3;  // m rms, shared
+// Of the relief along the direction of the most: sawn waves share up to 0.23 of it, the shafts of `tactus-bench shafts` from
+// 0.38 on.
+constexpr double ruled_share = 0.3;
 constexpr double flat_loss =
     3e-3;  // m: 95 % of losses that are exponentially distributed around 1 mm, the width of a blade
 
@@ -264,21 +268,80 @@ std::optional<double> covariance_around(const Touch& centre, const std::vector<T
     return products / static_cast<double>(count - terms);
 }
 
-/// m rms: relief that both faces share.
-double shared_relief(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) {
+/// The covariance of both heights about surfaces that are straight along `direction` (rad, in the opening's plane): of the
+/// points within `reach` (of `nearby`) along it, and a quarter of that across. None for too few points.
+std::optional<double> covariance_along(double direction, const Touch& centre, const std::vector<Touch>& around,
+                                       double reach) {
+    constexpr std::size_t terms = 6,
+                          min_around = 12;  // a ruled surface, to the second order across: 1, a, c, ac, c², c³
+    const double cosine = std::cos(direction), sine = std::sin(direction);
+    std::vector<double> matrix(terms * terms, 0.0), own(terms, 0.0), other(terms, 0.0);
+    double products = 0.0;
+    std::size_t count = 0;
+    for (const Touch& t : around) {
+        const double u = (t.u - centre.u) / reach, v = (t.v - centre.v) / reach;
+        const double along = u * cosine + v * sine, across = 4.0 * (v * cosine - u * sine);
+        if (!(std::abs(along) < 1.0) || !(std::abs(across) < 1.0)) continue;
+        const double row[terms] = {1.0, along, across, along * across, across * across, across * across * across};
+        const double mine = t.own - centre.own, its = t.other - centre.own;
+        ++count;
+        products += mine * its;
+        for (std::size_t a = 0; a < terms; ++a) {
+            own[a] += row[a] * mine;
+            other[a] += row[a] * its;
+            for (std::size_t b = 0; b < terms; ++b) matrix[a * terms + b] += row[a] * row[b];
+        }
+    }
+    if (count < min_around) return std::nullopt;
+    for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
+    std::vector<double> ruled = own;
+    if (!geometry::solve_positive(matrix, ruled)) return std::nullopt;
+    for (std::size_t a = 0; a < terms; ++a) products -= ruled[a] * other[a];
+    return products / static_cast<double>(count - terms);
+}
+
+/// m rms: relief that both faces share, about planes, and about ruled surfaces along the directions in which they share
+/// least and most.
+struct SharedRelief {
+    double about_planes = 0.0, least = 0.0, most = 0.0;
+
+    bool is_sawn() const { return about_planes < flat_relief || least < ruled_share * most; }
+};
+
+SharedRelief shared_relief(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) {
+    constexpr std::size_t directions = 24;
     const std::vector<Touch> touches = touches_of(moving, fixed, pose);
-    const std::size_t stride = 1 + touches.size() / max_paint;
+    const std::size_t stride = 1 + touches.size() / max_centres;
     // Sparse points, as of a wide pointshell, need more room.
     for (const double reach : {1.0, 1.7}) {
-        double sum = 0.0, count = 0.0;
-        for (std::size_t n = 0; n < touches.size(); n += stride)
-            if (const auto covariance = covariance_around(touches[n], touches, reach)) {
-                sum += *covariance;
-                count += 1.0;
+        std::array<double, directions> sum{}, count{};
+        double planes = 0.0, plane_count = 0.0;
+        std::vector<Touch> around;
+        for (std::size_t n = 0; n < touches.size(); n += stride) {
+            const Touch& centre = touches[n];
+            around.clear();
+            for (const Touch& t : touches)
+                if (std::hypot(t.u - centre.u, t.v - centre.v) < 1.1 * reach) around.push_back(t);
+            if (const auto covariance = covariance_around(centre, around, reach))
+                planes += *covariance, plane_count += 1.0;
+            for (std::size_t d = 0; d < directions; ++d)
+                if (const auto covariance = covariance_along(static_cast<double>(d) * std::numbers::pi / directions,
+                                                             centre, around, reach)) {
+                    sum[d] += *covariance;
+                    count[d] += 1.0;
+                }
+        }
+        double least = std::numeric_limits<double>::infinity(), most = 0.0;
+        for (std::size_t d = 0; d < directions; ++d)
+            if (count[d] > 0.0) {
+                least = std::min(least, sum[d] / count[d]);
+                most = std::max(most, sum[d] / count[d]);
             }
-        if (count > 0.0) return std::sqrt(std::max(0.0, sum / count));
+        if (plane_count > 0.0)
+            return {std::sqrt(std::max(0.0, planes / plane_count)), std::sqrt(std::clamp(least, 0.0, most)),
+                    std::sqrt(most)};
     }
-    return 0.0;
+    return {};
 }
 
 }  // namespace
@@ -305,7 +368,7 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
         const double doubt = share_of_spread * spread;
         const bool has_contour = contour.strips >= independent;
         made.is_contradicted = has_contour && missing > std::max(max_error, doubt);
-        made.is_flat = shared_relief(*moving.face, *fixed.face, pose) < flat_relief;
+        made.is_flat = shared_relief(*moving.face, *fixed.face, pose).is_sawn();
         if (has_contour && seen + doubt > max_error) made.loss = seen + 2.0 * spread;
         if (made.is_flat) made.loss = std::max(made.loss, flat_loss);
         made.is_open = !made.is_contradicted && made.loss > 0.0;

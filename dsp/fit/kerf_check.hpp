@@ -8,10 +8,12 @@
 // through a prism leaves no step at any width of the gap; the estimate then has a large spread. Flat faces slide along
 // each other until the contour has no step, so it excludes no loss between them.
 //
-// Rough faces that interlock are the evidence that no bone is lost. Only relief that both faces share counts, measured
-// about planes through the points within 3 mm. A freehand saw cut is wavy, and its waves close over the lost bone like
-// a whole break; but the waves are long, because the blade must follow them (tested: a radius of 6 mm and more;
-// tighter ones are taken for relief), and the grain that the teeth leave differs between the faces. The rms height of a whole face contains the waves, and that of one face its grain.
+// Rough faces that interlock are the evidence that no bone is lost. Only relief that both faces share counts: the grain
+// that teeth leave differs between the faces. A freehand saw cut is wavy, and its waves close over the lost bone like a
+// whole break; but the edge of a blade is straight, so that the cut is a ruled surface, straight along one direction,
+// however tight its waves. Relief is therefore measured twice: about planes through the points within 3 mm, and about
+// ruled surfaces, in the directions in which the faces share least and most. The rms height of a face contains the waves
+// and the grain.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -50,8 +52,9 @@ struct KerfEstimate {
     /// with a standard deviation of 1 mm or more must give a shift of two standard deviations instead. Without a given
     /// kerf, the shift must also exceed half a standard deviation.
     bool is_contradicted = false;
-    /// True if no kerf was given and the faces share less than 0.1 mm of local relief (rms), as after a saw cut. They
-    /// share more only if nothing is lost, or a layer of even thickness whose relief is shorter than a blade can follow.
+    /// True if no kerf was given and the faces share less than 0.1 mm of local relief (rms), or along one direction less than
+    /// 0.3 of that along another, as after a saw cut. Otherwise nothing is lost, or a layer of even thickness that no
+    /// straight blade removed.
     bool is_flat = false;
     /// m along the opening: largest loss that is not excluded, if no kerf was given. Beside a contour whose estimate plus
     /// half a standard deviation exceeds half a millimetre: the estimate plus two standard deviations. Between flat faces:
