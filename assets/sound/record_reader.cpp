@@ -227,16 +227,8 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         source_->names = log.names;
         source_->calibration = calibration_of_columns(log, source_->factors);
         const bool is_voltage = log.units.front() && log.units.front()->is_voltage();
-        if (!sensitivity && !calibration && is_voltage && !log.sensitivity.empty()) {
-            try {
-                calibrate(calibration, parse_sensitivity(log.sensitivity));
-            } catch (const Error& error) {
-                throw Error(fmt::format("{}: the sensitivity '{}' in the header is not understood: {}", path.string(),
-                                        log.sensitivity, error.message()));
-            }
-        } else {
-            calibrate(calibration, sensitivity);
-        }
+        if (!sensitivity && !calibration && is_voltage && source_->calibration.known) calibrate_as_stated();
+        else calibrate(calibration, sensitivity);
         source_->log = LogFacts{.rows = log.times.size(),
                                 .lost_rows = log.lost_rows,
                                 .gaps = even.gaps,
@@ -275,6 +267,40 @@ void RecordReader::calibrate(const std::optional<Calibration>& option, const std
         }
     }
     for (double& factor : source_->factors) factor *= used.factor;
+}
+
+void RecordReader::calibrate_as_stated() {
+    const table::AssignedSensitivities& stated = source_->rows.sensitivities;
+    const std::string file = source_->path.string();
+    if (!stated.doubt.empty()) throw Error(fmt::format("{}: {}", file, stated.doubt));
+    if (stated.of_columns.empty()) return calibrate(std::nullopt, std::nullopt);
+    std::vector<Sensitivity> sensors;
+    for (const table::StatedSensitivity& one : stated.of_columns) {
+        try {
+            sensors.push_back(parse_sensitivity(one.text));
+        } catch (const Error& error) {
+            throw Error(SourceLocation{file, one.line, 1},
+                        fmt::format("the sensitivity '{}' is not understood: {}", one.text, error.message()));
+        }
+    }
+    const Sensitivity& first = sensors.front();
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const Sensitivity& sensor = sensors[i];
+        texts.push_back(sensor.text);
+        if (sensor.unit.dimension != first.unit.dimension)
+            throw Error(SourceLocation{file, stated.of_columns[i].line, 1},
+                        fmt::format("the sensors of '{}' ({}) and '{}' ({}) measure different quantities; choose "
+                                    "columns of one quantity with --column",
+                                    source_->names.front(), first.text, source_->names[i], sensor.text));
+        source_->factors[i] *= first.volts / first.unit.si / sensor.volts * sensor.unit.si;
+    }
+    calibrate(std::nullopt, first);
+    if (std::ranges::any_of(texts, [&](const std::string& text) { return text != first.text; })) {
+        std::string list;
+        for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + text;
+        source_->calibration.source = "the header and the sensitivities " + list;
+    }
 }
 
 RecordReader::~RecordReader() = default;

@@ -67,6 +67,8 @@ public:
 
 private:
     void calibrate(const std::optional<Calibration>& option, const std::optional<Sensitivity>& sensitivity);
+    /// By the sensitivities that the header of a log states for its columns.
+    void calibrate_as_stated();
     struct Source;
     std::unique_ptr<Source> source_;
 };

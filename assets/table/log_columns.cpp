@@ -115,6 +115,11 @@ private:
             out_.rate = shape_.rate->value;
             return;
         }
+        if (!out_.time && shape_.rate_doubt)
+            throw Error(SourceLocation{file_, shape_.rate_doubt->line, 1},
+                        fmt::format("the sample rate in this line is not clear: {}; state it with --sample-rate, as "
+                                    "--sample-rate \"3.2 kHz\"",
+                                    shape_.rate_doubt->why));
         if (!out_.time && shape_.names.size() == 1)
             fail(
                 "there is only one column, and it holds no time; state the rate of the rows, as --sample-rate \"3.2 "

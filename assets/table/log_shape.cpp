@@ -4,6 +4,7 @@
 #include "assets/table/clock_time.hpp"
 #include "assets/table/column_unit.hpp"
 #include "assets/table/log_lines.hpp"
+#include "assets/table/stated_rate.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
 
@@ -11,8 +12,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
-#include <initializer_list>
 #include <map>
 #include <utility>
 
@@ -56,54 +57,6 @@ struct Table {
     std::vector<CellKind> kinds;
 };
 
-/// The first number in a text, and the letters behind it; none if there is no number above 0.
-std::optional<std::pair<double, std::string>> number_in_text(std::string_view text) {
-    const std::size_t begin = text.find_first_of("0123456789");
-    if (begin == std::string_view::npos) return std::nullopt;
-    std::string rest(text.substr(begin, 64));
-    // "0,0005": no list of a rate has less than three digits behind a comma that separates.
-    if (const std::size_t comma = rest.find_first_not_of("0123456789");
-        comma != std::string::npos && comma + 1 < rest.size() && rest[comma] == ',' && rest[comma + 1] >= '0' &&
-        rest[comma + 1] <= '9')
-        rest[comma] = '.';
-    char* end = nullptr;
-    const double number = std::strtod(rest.c_str(), &end);
-    if (!(number > 0.0)) return std::nullopt;
-    std::string_view unit = trimmed(end);
-    while (!unit.empty() && (unit.front() == ',' || unit.front() == ';' || unit.front() == '[' || unit.front() == '('))
-        unit = trimmed(unit.substr(1));
-    std::size_t letters = 0;
-    while (letters < unit.size() && ((unit[letters] | 0x20) >= 'a' || unit[letters] == '/') && unit[letters] != '[')
-        ++letters;
-    return std::pair(number, lower(unit.substr(0, letters)));
-}
-
-/// Hz: "# sample rate: 3.2 kHz", "Sampling frequency,1000,Hz", "Sample Interval,1e-05,s".
-std::optional<double> rate_in(std::string_view line) {
-    const std::string text = lower(line);
-    const auto behind =
-        [&](std::initializer_list<std::string_view> names) -> std::optional<std::pair<double, std::string>> {
-        for (const std::string_view name : names)
-            if (const std::size_t at = text.find(name); at != std::string::npos)
-                return number_in_text(std::string_view(text).substr(at + name.size()));
-        return std::nullopt;
-    };
-    if (const auto found = behind({"sample rate", "samplerate", "sample_rate", "sampling rate", "sampling_rate",
-                                   "samplingrate", "sampling frequency", "sample frequency", "sampling freq",
-                                   "samples per second", "abtastrate", "abtastfrequenz"})) {
-        const auto& [number, unit] = *found;
-        if (unit.starts_with("khz") || unit.starts_with("ks")) return 1e3 * number;
-        if (unit.starts_with("mhz") || unit.starts_with("ms")) return 1e6 * number;
-        return number;
-    }
-    if (const auto found = behind({"sample interval", "sampling interval", "sample period", "sampling period",
-                                   "delta_x", "time increment", "abtastintervall"})) {
-        const auto& [number, unit] = *found;
-        return unit.starts_with("ms") ? 1e3 / number : unit.starts_with("us") ? 1e6 / number : 1.0 / number;
-    }
-    return std::nullopt;
-}
-
 class Finder {
 public:
     Finder(std::string_view text, const std::string& file, std::optional<int> skip_rows)
@@ -133,9 +86,8 @@ public:
         shape.kinds = table_.kinds;
         shape.kinds.resize(shape.names.size(), CellKind::lost);
         read_increment(shape);
-        for (std::size_t i = 0; i < first; ++i) read_statement(lines_[i].text, shape);
-        for (std::size_t i = 0; i < first && !shape.rate; ++i)
-            if (const std::optional<double> rate = rate_in(lines_[i].text)) shape.rate = {*rate, lines_[i].number};
+        for (std::size_t i = 0; i < first; ++i) read_statement(lines_[i], shape);
+        if (!shape.rate) read_rates(first, shape);
         return shape;
     }
 
@@ -368,26 +320,42 @@ private:
     static void read_increment(LogShape& shape) {
         for (std::size_t i = 0; i < shape.units.size() && i < shape.names.size(); ++i) {
             if (lower(shape.names[i]) != "increment") continue;
-            const double step = std::strtod(shape.units[i].c_str(), nullptr);
-            if (!(step > 0.0)) return;
-            shape.rate = {1.0 / step, shape.units_line};
+            const double step = header_number(shape.units[i]).value_or(0.0);
+            if (!(step > 0.0) || !std::isfinite(step)) return;
+            shape.rate = {1.0 / step, shape.units_line, {}};
             for (std::size_t n = 0; n < shape.units.size() && n < shape.kinds.size(); ++n)
                 if (lower(shape.units[n]) == "sequence" || lower(shape.names[n]) == "start" || n == i)
                     shape.kinds[n] = CellKind::lost;
         }
     }
 
-    /// "# sensitivity: 100 mV/g", and the units of the channels of a LabVIEW file.
-    static void read_statement(std::string_view line, LogShape& shape) {
-        const std::string text = lower(line);
-        if (const std::size_t at = text.find("sensitivity"); at != std::string::npos && shape.sensitivity.empty()) {
-            std::string_view rest = trimmed(line.substr(at + 11));
-            while (!rest.empty() &&
-                   (rest.front() == ':' || rest.front() == '=' || rest.front() == ',' || rest.front() == ';'))
-                rest = trimmed(rest.substr(1));
-            const std::size_t end = std::min(rest.find_first_of(",;"), rest.size());
-            if (rest.find('/') < end) shape.sensitivity = as_utf8(trimmed(rest.substr(0, end)));
+    /// The rate that the lines above the rows state: of several that differ none.
+    void read_rates(std::size_t first, LogShape& shape) const {
+        for (std::size_t i = 0; i < first; ++i) {
+            const std::optional<StatedRate> found = stated_rate(lines_[i].text, table_.separator);
+            if (!found) continue;
+            const int number = lines_[i].number;
+            if (!found->doubt.empty()) {
+                if (!shape.rate_doubt) shape.rate_doubt = {found->doubt, number};
+            } else if (!shape.rate) {
+                shape.rate = {found->rate, number, found->point};
+            } else if (std::abs(found->rate / shape.rate->value - 1.0) > 0.01) {
+                shape.rate_doubt = {fmt::format("it states {:.6g} Hz, and line {} states {:.6g} Hz", found->rate,
+                                                shape.rate->line, shape.rate->value),
+                                    number};
+                shape.rate.reset();
+                return;
+            }
         }
+        if (shape.rate) shape.rate_doubt.reset();
+    }
+
+    /// "# sensitivity: 100 mV/g", and the units of the channels of a LabVIEW file.
+    static void read_statement(const Line& read, LogShape& shape) {
+        const std::string_view line = read.text;
+        const std::string text = lower(line);
+        for (StatedSensitivity& one : sensitivities_in(line, read.number, shape.separator))
+            shape.sensitivities.push_back(std::move(one));
         if (!text.starts_with("y_unit_label") || !shape.units.empty()) return;
         const Fields labels = fields_of(line, shape.separator);
         shape.units.resize(shape.names.size());

@@ -97,7 +97,7 @@ SampleLog log_of_recording(const Recording& recording, const std::string& file, 
         shape.names.push_back(channel.name);
         shape.units.push_back(channel.unit);
         shape.kinds.push_back(CellKind::number);
-        if (channel.rate > 0.0) shape.rate = {channel.rate, 0};
+        if (channel.rate > 0.0) shape.rate = {channel.rate, 0, {}};
     }
     // Numbers of columns count all channels of the file.
     LogSelection named = selection;

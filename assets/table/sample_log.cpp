@@ -73,6 +73,11 @@ public:
         check_clocks();
         if (const auto doubt = sign_.doubt()) fail_at(doubt->line, 1, doubt->why);
         if (log_.times.empty()) fail_at(0, 0, "there is no row with a number in every chosen column");
+        if (!columns_.time && !selection_.rate && sign_.sign() == ',' && !shape_.rate->point.empty())
+            fail_at(shape_.rate->line, 1,
+                    fmt::format("'{}' may have a thousands separator, for the numbers of the file have decimal commas; "
+                                "state the rate with --sample-rate",
+                                shape_.rate->point));
         if (columns_.time) log_.form.repeated = leave_out_repeated_rows(log_);
         settle_time_unit();
         note_form();
@@ -112,6 +117,11 @@ private:
             needed_ = std::max(needed_, *columns_.time);
         }
         log_.columns.resize(columns_.values.size());
+        std::vector<std::size_t> values;
+        for (std::size_t i = 0; i < shape_.names.size(); ++i)
+            if (shape_.kinds[i] == CellKind::number && i != columns_.time && !is_time_name(columns_.named[i].name))
+                values.push_back(i);
+        log_.sensitivities = assign_sensitivities(shape_.sensitivities, columns_.named, values, columns_.values);
         for (const std::size_t column : columns_.sources) sources_.push_back({column, {}, {}, 0});
         clock_times_.resize(columns_.clocks.size());
     }
@@ -416,7 +426,6 @@ private:
     void note_form() {
         LogForm& form = log_.form;
         form.separator = shape_.separator;
-        log_.sensitivity = shape_.sensitivity;
         form.decimal = sign_.sign();
         form.header_line = shape_.header_line;
         form.units_line = shape_.units_line;

@@ -4,6 +4,7 @@
 
 #include "assets/table/column_unit.hpp"
 #include "assets/table/packed_column.hpp"
+#include "assets/table/stated_sensitivity.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -25,7 +26,7 @@ struct LogSelection {
     std::optional<std::size_t> list_entry = std::nullopt;
     std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the names, else the only plausible one
     std::optional<int> skip_rows = std::nullopt;  ///< lines before the names; none: found
-    std::optional<double> rate = std::nullopt;    ///< Hz: rows follow at this rate, no time column is read
+    std::optional<double> rate = std::nullopt;  ///< Hz: rows follow at this rate, no time column is read
     std::string where{};  ///< "SENSOR=2": only rows with this value in this column; empty: all rows
 };
 
@@ -36,18 +37,18 @@ std::vector<std::string> names_in(std::string_view text, const std::function<boo
 
 /// What was understood of the form of a log, so that a wrong guess is seen.
 struct LogForm {
-    std::string format{};    ///< of files that are no text table: "UFF58, 3 datasets"; empty: what follows counts
-    char separator = ',';    ///< '\0': one column
-    char decimal = '\0';     ///< '.' or ','; '\0': no number shows it
+    std::string format{};  ///< of files that are no text table: "UFF58, 3 datasets"; empty: what follows counts
+    char separator = ',';  ///< '\0': one column
+    char decimal = '\0';  ///< '.' or ','; '\0': no number shows it
     int header_line = 0, units_line = 0, first_row = 0;  ///< lines from 1; 0: none
-    int skipped = 0;         ///< lines above the rows that were not used, without comments
-    int trailer = 0;         ///< lines with statistics below the rows
+    int skipped = 0;  ///< lines above the rows that were not used, without comments
+    int trailer = 0;  ///< lines with statistics below the rows
     std::size_t repeated = 0;  ///< rows that stated the row before once more and were left out
-    std::string time;        ///< "column 't' in ms", "clock times in column 'Time'", "--rate, 3200 Hz"
+    std::string time;  ///< "column 't' in ms", "clock times in column 'Time'", "--rate, 3200 Hz"
     bool is_time_unit_stated = true;  ///< by an option, a name or the cells; false: the only plausible one
 
     std::string separator_name() const;  ///< "comma", "semicolon", "tab", "blanks", "none"
-    std::string decimal_name() const;    ///< "point", "comma", "none seen"
+    std::string decimal_name() const;  ///< "point", "comma", "none seen"
 };
 
 /// One line: "comma-separated, decimal point, names in line 3, units in line 4, first row 5; time: column 't' in ms".
@@ -58,8 +59,8 @@ struct SampleLog {
     std::vector<std::string> names;  ///< names of the chosen columns, without units in brackets
     std::vector<std::optional<ColumnUnit>> units;  ///< of the chosen columns, as stated in the file
     std::vector<PackedColumn> columns;  ///< values per chosen column, as many as times
-    std::string time_name;           ///< empty: no time column
-    std::string sensitivity;         ///< of the sensor, as the file states it, "100 mV/g"; empty: it does not
+    std::string time_name;  ///< empty: no time column
+    AssignedSensitivities sensitivities;  ///< of the sensors of the chosen columns, as the file states them
     std::size_t lost_rows = 0;  ///< rows without a number in a chosen column, or an incomplete last row
     LogForm form;
 };

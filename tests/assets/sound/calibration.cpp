@@ -104,6 +104,29 @@ TEST_CASE("the header of a log calibrates it, a sensitivity makes volts an accel
     CHECK_THROWS_WITH(sound::parse_sensitivity("100 N/g"), ContainsSubstring("volts per unit"));
 }
 
+TEST_CASE("each channel of a log is calibrated by the sensitivity of its sensor") {
+    const Temporary file("calibration.csv");
+    write_log(file.path,
+              "# x sensitivity: 100 mV/g\n# y sensitivity: 0.01 V/g\n# z sensitivity: 1 mV/(m/s^2)\n"
+              "t [s],ax [mV],ay [mV],az [mV]",
+              "100,10,9.80665");
+    sound::RecordReader reader(file.path, {}, std::nullopt);
+    CHECK(reader.calibration().unit == "g");
+    CHECK_THAT(reader.calibration().source, ContainsSubstring("100 mV/g, 0.01 V/g, 1 mV/(m/s^2)"));
+    sound::RecordBlock block;
+    REQUIRE(reader.next(block));
+    for (const std::vector<double>& channel : block.channels) CHECK(channel[3] == Approx(1.0));
+    write_log(file.path, "# 1 sensitivity: 100 mV/g\n# 2 sensitivity: 10 mV/N\nt [s],a1 [mV],a2 [mV]", "100,10");
+    CHECK_THROWS_WITH(sound::RecordReader(file.path, {}, std::nullopt),
+                      ContainsSubstring(":2") && ContainsSubstring("different quantities"));
+    table::LogSelection one;
+    one.columns = {"a2"};
+    CHECK(sound::RecordReader(file.path, one, std::nullopt).calibration().unit == "N");
+    write_log(file.path, "# left sensitivity: 100 mV/g\n# right sensitivity: 10 mV/g\nt [s],a1 [mV],a2 [mV]", "100,10");
+    CHECK_THROWS_WITH(sound::RecordReader(file.path, {}, std::nullopt), ContainsSubstring("lines 1, 2"));
+    CHECK(sound::RecordReader(file.path, {}, std::nullopt, sound::parse_sensitivity("1 mV/g")).calibration().known);
+}
+
 TEST_CASE("columns of different quantities stay uncalibrated, and that is said") {
     const Temporary file("calibration.csv");
     const std::filesystem::path& path = file.path;

@@ -20,6 +20,12 @@ std::string unit_of(const table::SampleLog& log, std::size_t column) {
     return log.units[column] ? log.units[column]->text : "none";
 }
 
+std::vector<std::string> sensitivities_of(const table::SampleLog& log) {
+    std::vector<std::string> texts;
+    for (const table::StatedSensitivity& one : log.sensitivities.of_columns) texts.push_back(one.text);
+    return texts;
+}
+
 }  // namespace
 
 TEST_CASE("lines above the header are skipped, a row of units below it is read") {
@@ -327,7 +333,7 @@ TEST_CASE(
     CHECK(log.times[1] == Approx(1e-5));
     CHECK_THAT(log.form.time, ContainsSubstring("100000 Hz, as line 2 states"));
     log = read_logger("# sensitivity: 100 mV/g\nt_s,a [mV]\n0,1\n0.001,2\n0.002,3\n");
-    CHECK(log.sensitivity == "100 mV/g");
+    CHECK(sensitivities_of(log) == std::vector<std::string>{"100 mV/g"});
     log = read_logger(
         "LabVIEW Measurement\t\nY_Unit_Label\tg\tV\t\nDelta_X\t0.0005\t0.0005\t\n***End_of_Header***\t\t\t\n"
         "X_Value\tAcceleration\tVoltage\tComment\n0.0000\t1.5\t2\n0.0005\t2.5\t3\n0.0010\t3.5\t4\n0.0015\t4.5\t5\n",
@@ -390,4 +396,81 @@ TEST_CASE("a number beyond the columns is refused, a word or a separator there i
     CHECK_THROWS_WITH(read_logger(rows + "0.004,5,5\n0.005,6.5\n"),
                       ContainsSubstring("l.csv:6:1") && ContainsSubstring("are commas decimal"));
     CHECK(read_logger(rows + "0.004,5.5,\n0.005,6.5,hit\n").columns[0].size() == 6);
+}
+
+TEST_CASE("each column has the sensitivity that the header states for it") {
+    const auto stated = [](const std::string& header, std::string_view names, table::LogSelection selection = {}) {
+        const std::string row = names.ends_with("z (mV)") ? ",1,2,3\n" : ",1,2\n";
+        return read_logger(header + "\n" + std::string(names) + "\n0" + row + "0.001" + row + "0.002" + row, selection);
+    };
+    constexpr std::string_view axes = "t (s),ax (mV),ay (mV),az (mV)", two = "t (s),a1 (mV),a2 (mV)";
+    const std::vector<std::string> of_two{"100 mV/g", "10 mV/g"}, of_axes{"100 mV/g", "10 mV/g", "10 mV/g"};
+    for (const char* const header :
+         {"# x sensitivity: 100 mV/g\n# y sensitivity: 10 mV/g\n# z sensitivity: 10 mV/g",
+          "# Sensitivity ax = 100 mV/g\n# Sensitivity ay = 10 mV/g\n# Sensitivity az = 10 mV/g",
+          "# sensitivity: x = 100 mV/g, y = 10 mV/g, z = 10 mV/g", "# sensitivity: 100 mV/g; 10 mV/g; 10 mV/g",
+          "# sensitivity: 10 mV/g\n# sensitivity of the x axis: 100 mV/g",
+          "# channel 1 sensitivity: 100 mV/g\n# channel 2 sensitivity: 10 mV/g\n# channel 3 sensitivity: 10 mV/g"}) {
+        CAPTURE(header);
+        CHECK(sensitivities_of(stated(header, axes)) == of_axes);
+    }
+    for (const char* const header :
+         {"Sensitivity,100 mV/g,10 mV/g", "Sensitivity,,100 mV/g,10 mV/g", "Sensitivity (mV/g),100,10",
+          "Sensitivity,100,mV/g,10,mV/g", "# channel 1 sensitivity: 100 mV/g\n# channel 2 sensitivity: 10 mV/g",
+          "# a2 sensitivity: 10 mV/g\n# a1 sensitivity: 100 mV/g", "# sensitivity: 100 mV/g 10 mV/g",
+          "Sensitivity CH1,100 mV/g\nSensitivity CH2,10 mV/g"}) {
+        CAPTURE(header);
+        CHECK(sensitivities_of(stated(header, two)) == of_two);
+    }
+    CHECK(sensitivities_of(
+              stated("Sensitivity,100 mV/g,10 mV/g", two, {.time_column = {}, .columns = {"a2"}, .time_unit = {}})) ==
+          std::vector<std::string>{"10 mV/g"});
+    CHECK(sensitivities_of(stated("# sensitivity (nominal): 100 mV/g, 5 %", two)) ==
+          std::vector<std::string>{"100 mV/g", "100 mV/g"});
+    for (const char* const header :
+         {"# sensitivity: 100 mV/g\n# sensitivity: 10 mV/g",
+          "# left sensitivity: 100 mV/g\n# right sensitivity: 10 mV/g", "# sensitivity: 100 mV/g, 10 mV/g, 20 mV/g"}) {
+        CAPTURE(header);
+        const table::SampleLog log = stated(header, two);
+        CHECK(log.sensitivities.of_columns.empty());
+        CHECK_THAT(log.sensitivities.doubt, ContainsSubstring("line") && ContainsSubstring("100 mV/g, 10 mV/g") &&
+                                                ContainsSubstring("--sensitivity"));
+    }
+    CHECK_THAT(stated("# x sensitivity: 100 mV/g\n# y sensitivity: 10 mV/g", axes).sensitivities.doubt,
+               ContainsSubstring("lines 1, 2") && ContainsSubstring("'az'"));
+}
+
+TEST_CASE("a stated rate is read with its unit wherever that stands, or refused with its line") {
+    const auto rate = [](const std::string& header, char separator = ',') {
+        const std::string rows = separator == ',' ? "\n1.5,1\n2.5,2\n3.5,3\n" : "\n1,5;1\n2,5;2\n3,5;3\n";
+        const table::SampleLog log = read_logger(header + "\nax (g)" + separator + "ay (g)" + rows);
+        return 1.0 / log.times[1];
+    };
+    for (const char* const header :
+         {"Sampling rate (kHz): 25.6", "# Sample interval: 39.0625 \xc2\xb5s", "# Sample interval: 39.0625 \xb5s",
+          "# Sample interval (ms): 0.0390625", "# Sample interval: 39062.5 ns", "Sample rate,25600,25600",
+          "Sample rate,25600,Hz,Channels,2", "Sample rate [kHz],25.6,25.6", "# sampling rate of channel 2: 25.6 kHz",
+          "# sample_rate_hz = 25600", "# sample rate: 25600 samples per second", "# sample rate 25.6 kS/s, 16 bit",
+          "# sampling frequency: 25600 (Hz)", "# sample rate: 25600 Hz\n# sample interval: 39.06 us",
+          "# sample rate: 25,600 Hz\n# sample interval: 39.0625 us"}) {
+        CAPTURE(header);
+        CHECK(rate(header) == Approx(25600.0).margin(0.01));
+    }
+    CHECK(rate("Abtastrate: 25600,5 Hz", ';') == Approx(25600.5));
+    CHECK(rate("Abtastrate;25,6;kHz", ';') == Approx(25600.0));
+    CHECK(rate("Delta_X\t0,000500\t0,000500", ';') == Approx(2000.0));
+    for (const char* const header :
+         {"# Sample rate: 25,600 Hz", "# sample rate: 1,025,600 Hz", "# sample rate: 25600 rpm",
+          "Sample rate,25600,12800", "# sample interval: 39.0625", "# sample rate: 25600 Hz\n# sample rate: 800 Hz"}) {
+        CAPTURE(header);
+        CHECK_THROWS_WITH(rate(header), ContainsSubstring("l.csv:") && ContainsSubstring("sample rate in this line") &&
+                                            ContainsSubstring("--sample-rate"));
+    }
+    CHECK_THROWS_WITH(rate("Abtastrate: 25.600 Hz", ';'),
+                      ContainsSubstring("l.csv:1") && ContainsSubstring("'25.600'"));
+    // A line that is not clear does not matter to a file with times.
+    CHECK(read_logger("# sample rate: 25,600 Hz\nt_s,ax\n0,1\n0.5,2\n").times[1] == 0.5);
+    // The step in a scope's row of units may have a decimal comma.
+    CHECK(read_logger("X;CH1;Start;Increment\nSequence;Volt;-6,0e-02;1,0e-05\n0;1,5;;\n1;2,5;;\n2;3,5;;\n").times[1] ==
+          Approx(1e-5));
 }
