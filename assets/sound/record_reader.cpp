@@ -13,6 +13,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <span>
 #include <string_view>
 
@@ -41,6 +43,22 @@ std::size_t row_at(const table::PackedColumn& times, double time) {
     return low;
 }
 
+/// How many rows would fit into the steps that are longer than the median.
+std::size_t rows_missing_in(const table::PackedColumn& times) {
+    std::vector<double> steps(times.size());
+    times.read(0, steps);
+    std::adjacent_difference(steps.begin(), steps.end(), steps.begin());
+    steps.erase(steps.begin());
+    if (steps.empty()) return 0;
+    std::vector<double> sorted = steps;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::ranges::nth_element(sorted, middle);
+    double missing = 0.0;
+    if (*middle > 0.0)
+        for (const double step : steps) missing += std::max(0.0, std::round(step / *middle) - 1.0);
+    return static_cast<std::size_t>(std::min(missing, 1e15));
+}
+
 /// Keeps the rows of a stretch; times stay as they are.
 ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesystem::path& path) {
     const auto rows = static_cast<double>(log.times.size());
@@ -54,6 +72,7 @@ ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesy
     if (first == end) throw Error(fmt::format("{}: there is no row from {}", path.string(), read.text()));
     log.times.cut(first, end);
     for (table::PackedColumn& column : log.columns) column.cut(first, end);
+    log.lost_rows = std::min(log.lost_rows, rows_missing_in(log.times));
     return read;
 }
 
@@ -149,8 +168,8 @@ std::vector<std::string> LogFacts::missing() const {
         texts.push_back(fmt::format("the log has {} gap{}: samples of {} are missing", gaps, gaps == 1 ? "" : "s",
                                     readable(lost_seconds, "s", 4)));
     if (lost_rows > 0)
-        texts.push_back(fmt::format("the log has {} row{} without a value, left out", lost_rows,
-                                    lost_rows == 1 ? "" : "s"));
+        texts.push_back(
+            fmt::format("the log has {} row{} without a value, left out", lost_rows, lost_rows == 1 ? "" : "s"));
     return texts;
 }
 
@@ -241,6 +260,10 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
                                 .at_limit = {},
                                 .form = log.form,
                                 .usable = even.usable};
+        const auto all_rows = static_cast<double>(log.times.size() + log.lost_rows);
+        const double read_seconds = static_cast<double>(even.frames) / even.rate;
+        source_->log->lost_fraction =
+            std::max(static_cast<double>(log.lost_rows) / all_rows, even.lost / (read_seconds + even.lost));
         for (std::size_t c = 0; c < log.columns.size(); ++c) {
             signal::Level& level = source_->log->levels.emplace_back();
             LimitCount at_limit;

@@ -28,6 +28,9 @@ struct LogFacts {
     table::LogForm form;
     double usable = 0.0;  ///< Hz, usable bandwidth given the uneven steps; at most half the mean rate
 
+    /// Of the rows or of the time, whichever is larger: what is missing between the first and the last row.
+    double lost_fraction = 0.0;
+
     bool is_even() const;  ///< the steps differ by less than a thousandth, without gaps
     /// What is missing, as warnings for each result of the record: gaps, rows without values.
     std::vector<std::string> missing() const;

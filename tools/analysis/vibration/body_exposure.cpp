@@ -106,6 +106,7 @@ BodyOperation analyse_body_exposure(const std::filesystem::path& file, const Exp
             out.notes.push_back(
                 fmt::format("axis {} is clipped in {} samples: the value is too low", one.name, one.clipped));
     }
+    note_lost(out.log, out.notes);
     if (!out.calibrated) out.notes.push_back("uncalibrated: the values are interpreted as m/s^2");
     if (out.band_high < 80.0)
         out.notes.push_back(

@@ -29,8 +29,8 @@ struct BodyOperation {
 
     /// √(Σ a_w²) of the axes without factors: of all three, the vibration total value of comfort.
     double total() const;
-    /// True when axes or a part of the band are missing or samples are clipped: values are then lower bounds.
-    bool is_lower_bound() const { return band_high < 80.0 || axes.size() < 3 || clipped > 0; }
+    /// True when axes or a part of the band are missing, or samples are clipped or lost: values are then lower bounds.
+    bool is_lower_bound() const { return band_high < 80.0 || axes.size() < 3 || clipped > 0 || is_incomplete(log); }
 };
 
 /// As `analyse_exposure`, for the whole body. Throws Error, also if the axes of the channels are unknown.

@@ -30,8 +30,8 @@ struct ExposureOperation {
     double total() const { return signal::vibration_total(weighted); }
     std::size_t clipped = 0;  ///< samples
 
-    /// True when axes or a part of the band are missing or samples are clipped: values are then lower bounds.
-    bool is_lower_bound() const { return band_high < 1250.0 || !three_axes || clipped > 0; }
+    /// True when axes or a part of the band are missing, or samples are clipped or lost: values are then lower bounds.
+    bool is_lower_bound() const { return band_high < 1250.0 || !three_axes || clipped > 0 || is_incomplete(log); }
 };
 
 /// Verdict on the exposure of a day. A lower bound can exceed a limit, but never proves compliance.

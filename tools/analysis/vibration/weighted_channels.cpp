@@ -10,6 +10,16 @@
 
 namespace tactus::analysis {
 
+bool is_incomplete(const std::optional<sound::LogFacts>& log) { return log && log->lost_fraction > max_lost_fraction; }
+
+void note_lost(const std::optional<sound::LogFacts>& log, std::vector<std::string>& notes) {
+    if (is_incomplete(log))
+        notes.push_back(
+            fmt::format("{:.3g} % of the record is missing, more than {:g} %: the values are those of the rest, which "
+                        "do not prove that an action or limit value is kept",
+                        100.0 * log->lost_fraction, 100.0 * max_lost_fraction));
+}
+
 OpenAcceleration open_acceleration(const std::filesystem::path& file, const ExposureSettings& settings) {
     OpenAcceleration out{open_record(file, settings.record), {}, 0.0};
     const sound::Calibration& calibration = out.reader.calibration();

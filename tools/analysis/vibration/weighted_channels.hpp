@@ -6,6 +6,7 @@
 #include "tools/analysis/vibration/record.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,14 @@ struct OpenAcceleration {
     std::vector<std::size_t> channels;
     double usable = 0.0;
 };
+
+/// Above this fraction of lost samples a record does not prove that an exposure is low enough.
+inline constexpr double max_lost_fraction = 0.01;
+
+/// Of a log whose lost samples are more than that.
+bool is_incomplete(const std::optional<sound::LogFacts>& log);
+/// Adds a note about them.
+void note_lost(const std::optional<sound::LogFacts>& log, std::vector<std::string>& notes);
 
 /// Opens a record of one to three axes. Throws Error if it is not an acceleration or not calibrated.
 OpenAcceleration open_acceleration(const std::filesystem::path& file, const ExposureSettings& settings);

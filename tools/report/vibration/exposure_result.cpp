@@ -44,7 +44,7 @@ std::string verdict_text(ExposureVerdict verdict, const signal::ExposureLimits& 
                                limits.action, limits.limit);
         case ExposureVerdict::cannot_be_judged: break;
     }
-    return "cannot be judged; axes, frequencies or peaks are missing in the record";
+    return "cannot be judged; axes, frequencies, peaks or samples are missing in the record";
 }
 
 Severity severity_of(ExposureVerdict verdict) {
