@@ -2,6 +2,7 @@
 #include "assets/plan/paint_file.hpp"
 
 #include "assets/file/json.hpp"
+#include "assets/file/json_frame.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/contact/neighbours.hpp"
 #include "dsp/contact/scanned_border.hpp"
@@ -27,7 +28,7 @@ constexpr double stroke_radius = 0.9e-3;  // m
 constexpr double rounding = 2e-6;  // m, more than the rounding of a position and a radius in the file
 constexpr double rim_share = 0.7;  // of the distance to the next unpainted point: the rim lies about half way
 
-/// Those from "bone" on are for people.
+/// "bone" and "faces" are for people.
 const std::vector<std::string> member_names{"radius_mm", "paint", "erase", "bone", "unit", "frame", "faces"};
 
 struct Stroke {
@@ -101,6 +102,7 @@ void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view t
     if (!json.is_object() || (!json.contains("paint") && !json.contains("erase")))
         throw Error(fmt::format(
             "{}: expected {{\"radius_mm\": r, \"paint\": [[x, y, z], ...], \"erase\": [[x, y, z], ...]}}", file));
+    file::require_lps_mm(json, "unit", file);
     const double radius =
         json.contains("radius_mm") ? radius_of(json["radius_mm"], file, "'radius_mm'") : stroke_radius;
     const auto paint = strokes_of(json, "paint", radius, file), erase = strokes_of(json, "erase", radius, file);

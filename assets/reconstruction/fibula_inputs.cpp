@@ -2,6 +2,7 @@
 #include "assets/reconstruction/fibula_inputs.hpp"
 
 #include "assets/file/json.hpp"
+#include "assets/file/json_frame.hpp"
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/reconstruction/flap_files.hpp"
@@ -22,7 +23,7 @@ namespace {
 
 using file::Json;
 
-/// Of the whole file; "units" to "notes" are for people and the check of the unit, those from "vessels" on are of the flap.
+/// Of the whole file; "source" and "notes" are for people, those from "vessels" on are of the flap.
 const std::vector<std::string> member_names{"units",
                                             "frame",
                                             "source",
@@ -120,8 +121,7 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
     if (has_planes == has_curve || !json.contains("fibula_line") || !json["fibula_line"].is_object())
         throw Error(fmt::format(
             "{}: expected an object with 'fibula_line' and either 'mandible_planes' or 'jaw_curve' (a list)", file));
-    if (const Json* units = json.find("units"); units && !(units->is_string() && units->as_text() == "mm"))
-        throw Error(fmt::format("{}: 'units' must be \"mm\"", file));
+    file::require_lps_mm(json, "units", file);
     FibulaInputs inputs;
     if (has_planes) inputs.planes = planes_of(json["mandible_planes"], file);
     else {

@@ -21,8 +21,8 @@ inline constexpr std::size_t max_planes = 6;
 ///      "kerf_mm": 0.4, "resection": "between", "donor": "fibula.stl", "jaw": "jaw.stl"}
 /// in LPS. Instead of the planes the file may contain a curve along the jaw, "jaw_curve": [[x, y, z], ...] with
 /// "segments": 3 and optionally "least_segment_mm": 20. All members from "leg" on are optional, and so are normals of
-/// inner planes and each "y". The members of the flap (read_reconstruction_inputs), "x" of planes, "frame", "source"
-/// and "notes" are accepted and ignored; others are rejected. Paths of meshes are relative to the file; their unit is
+/// inner planes and each "y". The members of the flap (read_reconstruction_inputs), "x" of planes, "source"
+/// and "notes" are accepted and ignored; "frame" must begin with "LPS"; others are rejected. Paths of meshes are relative to the file; their unit is
 /// mm unless they state another. Throws Error.
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path);
 

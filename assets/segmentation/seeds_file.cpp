@@ -2,6 +2,7 @@
 #include "assets/segmentation/seeds_file.hpp"
 
 #include "assets/file/json.hpp"
+#include "assets/file/json_frame.hpp"
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/table/log_lines.hpp"
@@ -104,6 +105,7 @@ std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& f
     file::refuse_unknown(json, file, file_names);
     if (!json.is_object() || !json.contains("labels") || !json["labels"].is_array())
         throw Error(fmt::format("{}: expected {}", file, expected));
+    file::require_lps_mm(json, "unit", file);
     const Json& list = json["labels"];
     if (list.size() < 2 && use == SeedsUse::segmentation)
         throw Error(fmt::format("{}: there {} {}; a segmentation needs seeds of at least two", file,
