@@ -198,11 +198,24 @@ ReadPoints points_of_text(std::string_view text, const std::string& file) {
         }
         const Json* points = markup.find("controlPoints");
         if (!points || !points->is_array()) continue;
+        const std::size_t first = read.points.size();
         for (const Json& point : *points)
             if (auto found = point_of(point, ++number, sign_of_frame(frame), file, read.notes))
                 read.points.push_back(std::move(*found));
+        if (read.points.size() > first) read.firsts.push_back(first);
     }
     return read;
+}
+
+std::vector<ControlPoint> points_of_markup(const ReadPoints& read, std::size_t index, const std::string& file) {
+    if (index >= read.firsts.size())
+        throw Error(fmt::format("{}: has no curve {}; {} of its markups have points, counted from 0", file, index,
+                                read.firsts.size()));
+    const auto at = [&](std::size_t n) {
+        return read.points.begin() +
+               static_cast<std::ptrdiff_t>(n < read.firsts.size() ? read.firsts[n] : read.points.size());
+    };
+    return {at(index), at(index + 1)};
 }
 
 ReadPoints points_of_fcsv(std::string_view text, const std::string& file) {
@@ -237,12 +250,14 @@ ReadPoints points_of_fcsv(std::string_view text, const std::string& file) {
         if (fields.size() > description_field) point.description = fields[description_field];
         read.points.push_back(std::move(point));
     }
+    if (!read.points.empty()) read.firsts = {0};
     return read;
 }
 
 ReadPoints read_points(const std::filesystem::path& path) {
     const std::string text = file::read_whole_file(path);
-    return file::extension_of(path) == ".fcsv" ? points_of_fcsv(text, path.string()) : points_of_text(text, path.string());
+    return file::extension_of(path) == ".fcsv" ? points_of_fcsv(text, path.string())
+                                               : points_of_text(text, path.string());
 }
 
 }  // namespace tactus::markup

@@ -18,6 +18,7 @@
 
 #include "dsp/core/types.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -54,8 +55,12 @@ std::string text_of(std::span<const Markup> markups);
 
 struct ReadPoints {
     std::vector<ControlPoint> points;
+    std::vector<std::size_t> firsts{};  ///< first point of each markup that has points
     std::vector<std::string> notes;  ///< one line each: points that were skipped because they have no position
 };
+
+/// The points of one markup, counted from 0 among those that have points. Throws Error naming `file` if there are fewer.
+std::vector<ControlPoint> points_of_markup(const ReadPoints& read, std::size_t index, const std::string& file);
 
 /// The control points of all markups of a .mrk.json, in LPS or RAS and mm. Those whose status is `undefined` or `preview`
 /// have no position yet: they are skipped and listed in the notes. `file` is the name in messages. Throws Error for

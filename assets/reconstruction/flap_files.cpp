@@ -114,9 +114,16 @@ FlapVessel read_vessel(const fs::path& path, VesselKind kind, int branch, std::v
     const std::string name = lower(stem);
     FlapVessel vessel;
     if (name.ends_with(".mrk.json")) {
-        if (branch != 0) throw Error(fmt::format("{}: only tables (.csv) have branches", path.string()));
+        if (branch < 0) throw Error(fmt::format("{}: curves are counted from 0, not {}", path.string(), branch));
         stem.resize(stem.size() - 9);
-        for (const MarkedPoint& mark : read_marks(path, notes)) vessel.points.push_back(mark.at);
+        const markup::ReadPoints read = markup::read_points(path);
+        notes.insert(notes.end(), read.notes.begin(), read.notes.end());
+        for (const markup::ControlPoint& point :
+             markup::points_of_markup(read, static_cast<std::size_t>(branch), path.string()))
+            vessel.points.push_back(point.position);
+        if (const std::size_t count = read.firsts.size(); count > 1)
+            notes.push_back(fmt::format("{}: curve {} of {} is the vessel; {} {} left out", path.string(), branch,
+                                        count, count - 1, count == 2 ? "was" : "were"));
         if (vessel.points.size() < 2) throw Error(fmt::format("{}: a vessel needs two points", path.string()));
     } else if (name.ends_with(".csv")) {
         stem.resize(stem.size() - 4);

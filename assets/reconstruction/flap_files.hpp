@@ -24,7 +24,7 @@ std::vector<MarkedPoint> marks_of(const markup::ReadPoints& read, const std::str
 std::vector<MarkedPoint> read_marks(const std::filesystem::path& path, std::vector<std::string>& notes);
 
 /// Reads a vessel from a table written by 'tactus vessel' (.csv; one of its branches, with the mean radius) or from a
-/// curve of 3D Slicer (.mrk.json). Its name is that of the file; `notes` as for read_marks. Throws Error.
+/// file of curves of 3D Slicer (.mrk.json; the curve of that number from 0, others are noted). Its name is that of the file; `notes` as for read_marks. Throws Error.
 FlapVessel read_vessel(const std::filesystem::path& path, VesselKind kind, int branch, std::vector<std::string>& notes);
 FlapVessel vessel_of_table(std::string_view text, const std::string& file, int branch = 0);
 

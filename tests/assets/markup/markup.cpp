@@ -111,6 +111,22 @@ TEST_CASE("a control point without a position is left out and named") {
               "sites.mrk.json: control point 4 has no position (its status is \"preview\"): left out"});
 }
 
+TEST_CASE("the points of each markup of a file are told apart") {
+    markup::Markup first, second;
+    first.kind = second.kind = markup::Kind::curve;
+    first.points.resize(2);
+    second.points.resize(3);
+    second.points[0].label = "c";
+    const markup::ReadPoints read =
+        markup::points_of_text(markup::text_of(std::array{first, markup::Markup{}, second}), "a");
+    CHECK(read.points.size() == 5);
+    CHECK(markup::points_of_markup(read, 0, "a").size() == 2);
+    REQUIRE(markup::points_of_markup(read, 1, "a").size() == 3);
+    CHECK(markup::points_of_markup(read, 1, "a")[0].label == "c");
+    CHECK_THROWS_WITH(markup::points_of_markup(read, 2, "a.mrk.json"),
+                      ContainsSubstring("a.mrk.json: has no curve 2") && ContainsSubstring("2 of its markups"));
+}
+
 TEST_CASE("a file of markups in RAS, or with its unit as a code, is read in LPS and metres") {
     const auto points = markup::points_of_text(
         R"({"markups": [{"type": "Curve", "coordinateSystem": "RAS", "coordinateUnits": ["mm", "UCUM", "millimeter"],

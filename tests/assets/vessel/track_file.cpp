@@ -3,10 +3,12 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "assets/reconstruction/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <unistd.h>
+#include <glm/geometric.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -43,6 +45,29 @@ std::filesystem::path place(const std::string& name) {
 }
 
 }  // namespace
+
+TEST_CASE("a vessel that is read from the curves of a track is one of its branches, as that of its table") {
+    using Catch::Matchers::ContainsSubstring;
+    vessel::write_track(forked(), place("artery.csv"));
+    vessel::write_track(forked(), place("artery.mrk.json"));
+    for (const int branch : {0, 1}) {
+        CAPTURE(branch);
+        std::vector<std::string> notes;
+        const auto read = [&](const char* name) {
+            return reconstruction::read_vessel(place(name), reconstruction::VesselKind::artery, branch, notes);
+        };
+        const reconstruction::FlapVessel table = read("artery.csv"), curve = read("artery.mrk.json");
+        REQUIRE(curve.points.size() == table.points.size());
+        for (std::size_t n = 0; n < table.points.size(); ++n)
+            CHECK(glm::length(curve.points[n] - table.points[n]) < 1e-6);
+        REQUIRE(notes.size() == 1);
+        CHECK_THAT(notes.front(), ContainsSubstring("of 2 is the vessel; 1 was left out"));
+    }
+    std::vector<std::string> notes;
+    CHECK_THROWS_WITH(
+        reconstruction::read_vessel(place("artery.mrk.json"), reconstruction::VesselKind::artery, 2, notes),
+        ContainsSubstring("has no curve 2"));
+}
 
 TEST_CASE("a track as CSV has a row per node and names the row before each") {
     vessel::write_track(forked(), place("line.csv"));

@@ -77,6 +77,10 @@ PaddleStudy study_paddle(FlapStudy& study, const std::filesystem::path& defect, 
     found.settings = settings;
     markup::ReadPoints read = markup::read_points(defect);
     found.notes = std::move(read.notes);
+    if (read.firsts.size() > 1)
+        throw Error(
+            fmt::format("{}: holds {} markups with points; the defect must be one closed curve, alone in its file",
+                        defect.string(), read.firsts.size()));
     const std::vector<Vec3> curve = through(read.points);
     const reconstruction::FlapObstacle bone = study.bone();
     found.draped = skin::drape(study.inputs(), study.placed_plan(), study.flap(), curve, &bone, settings);
