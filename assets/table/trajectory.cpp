@@ -152,11 +152,12 @@ private:
                  fmt::format("time {} s comes after {} s; times must increase", time, last_time_));
         last_time_ = time;
         has_time_ = true;
-        bool breaks = false;
         if (trial_) {
             const double trial = value(*trial_);
-            breaks = trials_.empty() || trials_.back() != trial;
-            if (breaks) trials_.push_back(trial);
+            if (trials_.empty() || trials_.back() != trial) {
+                begins_trial_ = true;
+                trials_.push_back(trial);
+            }
             if (selection_.trial != 0 && trial != selection_.trial) return;
         }
         if (status_ && fields[status_->index].text != "OK") {
@@ -172,7 +173,8 @@ private:
             fail(fields[rotation_[1].index].column,
                  fmt::format("the quaternion has length {:.4g}; a rotation must have length 1", length));
         sample.pose.orientation = q / length;
-        if (breaks && !out.samples.empty()) out.breaks.push_back(out.samples.size());
+        if (begins_trial_ && !out.samples.empty()) out.breaks.push_back(out.samples.size());
+        begins_trial_ = false;
         out.samples.push_back(sample);
         if (force_[0] && force_[1] && force_[2])
             out.forces.push_back({value(*force_[0]), value(*force_[1]), value(*force_[2])});
@@ -201,6 +203,7 @@ private:
     int line_ = 0;
     double last_time_ = 0.0;
     bool has_time_ = false;
+    bool begins_trial_ = false;  // of the next sample that is kept: the first of a trial may be lost
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace tactus::table {
 /// A recording: samples in s, m and unit quaternions, in the frame it was recorded in.
 struct Trajectory {
     std::vector<simulate::TrajectorySample> samples;
-    std::vector<std::size_t> breaks;  ///< samples that begin a new trial or follow a lost sample
+    std::vector<std::size_t> breaks;  ///< samples that begin a new trial
     std::vector<Vec3> forces;         ///< N, as recorded; empty when the file has none
     std::size_t lost = 0;             ///< rows with a status other than OK; skipped
     double median_step_s = 0.0;

@@ -5,7 +5,11 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
 
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
 #include <unistd.h>
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -80,6 +84,23 @@ TEST_CASE("a tool is chosen by the prefix of its columns, and lost samples are l
     CHECK(t.samples.size() == 2);
     CHECK(t.lost == 1);
     CHECK_THAT(csv.error(), ContainsSubstring("px_mm") && ContainsSubstring("the file has the tools A"));
+}
+
+TEST_CASE("a trial whose first samples are lost begins a segment at its first sample") {
+    std::string text = "t_s,px_mm,py_mm,pz_mm,qw,qx,qy,qz,trial,status\n";
+    for (int i = 0; i <= 200; ++i)
+        text += fmt::format("{:.3f},{},0,20,1,0,0,0,{},{}\n", 0.01 * i, i <= 100 ? 0 : 60, i <= 100 ? 1 : 2,
+                            i == 101 || i == 102 ? "LOST" : "OK");
+    const Csv csv(text);
+    const table::Trajectory t = table::read_trajectory(csv.path);
+    CHECK(t.lost == 2);
+    CHECK(t.breaks == std::vector<std::size_t>{101});
+    const simulate::TrajectoryPlayer player(t.samples, t.breaks, t.rules());
+    std::size_t hint = 0;
+    double peak = 0.0;
+    for (double time = 0.0; time < player.duration(); time += 0.001)
+        peak = std::max(peak, glm::length(player.at(time, hint).intention.twist.linear));
+    CHECK(peak < 0.1);
 }
 
 TEST_CASE("a bad file is refused in one line that says where") {
