@@ -101,6 +101,12 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::st
         note && stated && static_cast<double>(*stated) > size)
         *note =
             fmt::format("the sound is cut short: its header states {} bytes and the file has {:.0f}", *stated, size);
+    if (note && note->empty())
+        if (const std::uint64_t unread = unread_bytes(path, static_cast<std::uint64_t>(size)); unread > 0)
+            *note = fmt::format(
+                "the header states {:.0f} bytes and the file has {:.0f}: the rest was not read, though it may "
+                "hold samples; repair the header, or convert the file again",
+                size - static_cast<double>(unread), size);
     if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
     if (info.samplerate > fastest_rate)
         fail(fmt::format("its header states {} samples per second; the limit is {}", info.samplerate, fastest_rate));

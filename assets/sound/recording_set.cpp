@@ -56,6 +56,7 @@ void load_samples(Recording& r) {
     const Sound sound = load_sound(r.file);
     r.sample_rate = sound.rate;
     r.samples = mix_to_mono(sound);
+    if (!sound.note.empty()) r.file_note = fmt::format("{}: {}", r.file.filename().string(), sound.note);
 }
 
 /// Estimates an unstated rate. Throws Error when the sound has no clear rate or is too short.

@@ -28,6 +28,7 @@ struct Recording {
     double loop_end = 0.0;             ///< s; 0 means to the end
     int sample_rate = 0;               ///< Hz
     std::vector<float> samples;        ///< mono
+    std::string file_note{};           ///< defect of the sound's header; empty: none
 
     double used_from() const { return loop_begin; }  ///< s
     double used_to() const { return loop_end > 0.0 ? loop_end : static_cast<double>(samples.size()) / sample_rate; }

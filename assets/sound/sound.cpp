@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <string>
+#include <utility>
 
 namespace tactus::sound {
 
@@ -22,10 +24,11 @@ constexpr std::size_t max_samples = std::size_t{1} << 28;
 Sound load_sound(const std::filesystem::path& path) {
     const auto fail = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
     SF_INFO info{};
-    const SoundHandle file = open_sound(path, info);
+    std::string note;
+    const SoundHandle file = open_sound(path, info, &note);
     if (static_cast<std::size_t>(info.frames) > max_samples / static_cast<std::size_t>(info.channels))
         fail("the sound is longer than 2^28 samples; cut it first");
-    Sound sound{info.samplerate, info.channels, static_cast<std::size_t>(info.frames), {}};
+    Sound sound{info.samplerate, info.channels, static_cast<std::size_t>(info.frames), {}, std::move(note)};
     file::require_room(double(info.frames) * info.channels * sizeof(float), path, "its samples");
     // The stated length is not trusted: memory grows with the data that is read.
     const std::size_t chunk_frames = std::min<std::size_t>(65536, sound.frames);

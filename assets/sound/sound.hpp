@@ -16,6 +16,7 @@ struct Sound {
     int channels = 0;
     std::size_t frames = 0;      ///< samples per channel
     std::vector<float> samples;  ///< interleaved, frames × channels; full scale is ±1
+    std::string note{};          ///< defect of the file's header, one sentence; empty: none
 
     double duration() const { return static_cast<double>(frames) / rate; }  ///< s
 };

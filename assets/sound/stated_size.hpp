@@ -13,4 +13,7 @@ namespace tactus::sound {
 /// For waves see repaired_wave_header.
 std::optional<std::uint64_t> stated_size(const std::filesystem::path& path);
 
+/// Bytes of a file of `size` behind that, which are no chunk: samples that the header does not count. 0 below eight bytes.
+std::uint64_t unread_bytes(const std::filesystem::path& path, std::uint64_t size);
+
 }  // namespace tactus::sound

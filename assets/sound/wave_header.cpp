@@ -42,6 +42,18 @@ bool is_known_chunk(std::string_view name) {
     return std::ranges::find(known, name) != known.end();
 }
 
+/// Tags that players append to a file, without the size of a chunk.
+bool is_tag(std::string_view bytes) {
+    return bytes.starts_with("TAG") || bytes.starts_with("ID3") || bytes.starts_with("APETAGEX");
+}
+
+/// Of the bytes behind the samples: a chunk with a name, which fits into the file or has a known name, or a tag.
+bool is_behind_samples(std::string_view head, std::uint64_t left) {
+    if (head.size() < 8) return true;
+    const std::string_view name = head.substr(0, 4);
+    return is_tag(head) || is_known_chunk(name) || (is_chunk_name(name) && number_at(head, 4, 4) + 8 <= left + 1);
+}
+
 }  // namespace
 
 std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path) {
@@ -65,6 +77,7 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
     std::optional<std::uint64_t> start;
     std::uint64_t size = 0, wanted = 0, long_size = 0;
     bool is_before_format = false, lacks_padding = false, is_wrong = !is_rf64 && stated + 8 > present;
+    bool is_short = false;  // the stated size of the samples
     for (std::uint64_t at = 12; at + 8 <= present;) {
         const std::string chunk = read(at, 8);
         const std::string_view name = std::string_view(chunk).substr(0, 4);
@@ -84,6 +97,14 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
                 const std::string next = read(at + 8, 8);
                 is_unfinished =
                     !(next.size() == 8 && is_chunk_name(next.substr(0, 4)) && number_at(next, 4, 4) + 8 <= left);
+            }
+            // A recorder that was cut off, or a copied header: the samples go on behind their stated size.
+            if (!is_unfinished && wanted > 0 && wanted < left) {
+                const std::uint64_t end = at + 8 + wanted, rest = present - end;
+                const std::string next = read(end + wanted % 2, 8);
+                is_unfinished = !is_behind_samples(next, rest - std::min(rest, wanted % 2)) &&
+                                !(wanted % 2 != 0 && is_behind_samples(read(end, 8), rest));
+                is_short = is_unfinished;
             }
             if (is_unfinished) {
                 size = left, is_wrong = true;
@@ -129,8 +150,12 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
     made.bytes += body;
     const bool is_unknown = wanted == 0 || wanted >= 0x7fffff00;
     made.note =
-        is_before_format && !is_wrong ? std::string("the samples stand before their format in the file")
-        : lacks_padding && !is_wrong  ? std::string("a chunk of odd length lacks its padding byte")
+        is_short ? fmt::format(
+                       "the header states {} bytes of samples, and {} follow that are no chunk; they were read as "
+                       "samples",
+                       wanted, present - *start - wanted)
+        : is_before_format && !is_wrong ? std::string("the samples stand before their format in the file")
+        : lacks_padding && !is_wrong    ? std::string("a chunk of odd length lacks its padding byte")
         : size >= wanted && !is_unknown
             ? fmt::format("the header states {} bytes and the file has {}; all samples are there", stated + 8, present)
         : is_unknown ? fmt::format(

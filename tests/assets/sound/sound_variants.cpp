@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sounds as the formats allow them, written byte by byte: widths, byte orders, floating-point numbers, extensible waves, AIFC.
 #include "assets/file/whole_file.hpp"
+#include "assets/sound/sound.hpp"
 #include "assets/sound/sound_reader.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
@@ -182,6 +183,17 @@ TEST_CASE("an AIFF or AU that is cut is read to the cut with a note, and a chunk
         CHECK(note_of(name, whole).empty());
         CHECK_THAT(note_of(name, whole.substr(0, whole.size() - 300)), ContainsSubstring("cut short"));
     }
+    // A size that is too small: what it does not count may be samples.
+    std::string short_au = au, short_aiff = aiff;
+    short_au.replace(8, 4, number_of(200, 4, true));
+    short_aiff.replace(short_aiff.find("SSND") + 4, 4, number_of(208, 4, true));
+    short_aiff.replace(short_aiff.find("COMM") + 10, 4, number_of(100, 4, true));
+    for (const auto& [name, bytes] : {std::pair{"c.aiff", short_aiff}, {"c.au", short_au}}) {
+        CAPTURE(name);
+        CHECK_THAT(note_of(name, bytes), ContainsSubstring("the rest was not read"));
+        CHECK_THAT(sound::load_sound(files.folder / name).note, ContainsSubstring("the rest was not read"));
+    }
+    CHECK(note_of("d.aiff", aiff + piece("NAME", "four", true)).empty());
     std::string longer = aiff;  // 8 bytes more in the header than there are
     longer.replace(4, 4, number_of(aiff.size(), 4, true));
     CHECK(note_of("b.aiff", longer).empty());

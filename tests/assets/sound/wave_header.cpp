@@ -89,6 +89,30 @@ TEST_CASE("whatever sizes the header of a wave states, all samples that the file
     }
 }
 
+TEST_CASE("samples behind a stated size that is too small are read with a note, chunks and tags there are none") {
+    const WaveFile file;
+    const std::string samples = samples_of_wave();
+    file::write_whole_file(file.path, wave_bytes(36 + samples.size(), samples.size(), samples));
+    const std::vector<double> right = frames_of(file.path);
+    std::string note;
+    for (const std::uint64_t stated : {200u, 201u, 1000u}) {
+        CAPTURE(stated);
+        file::write_whole_file(file.path, wave_bytes(36 + stated, stated, samples));
+        CHECK(frames_of(file.path, &note) == right);
+        CHECK_THAT(note,
+                   ContainsSubstring(fmt::format("states {} bytes", stated)) && ContainsSubstring("read as samples"));
+        CHECK(sound::load_sound(file.path).note == note);
+    }
+    for (const std::string& behind : {chunk_of("LIST", 12, "INFOICMT    "), chunk_of("abcd", 4, "1234"),
+                                      "TAG" + std::string(125, 'x'), std::string(6, '\0')}) {
+        CAPTURE(behind);
+        file::write_whole_file(file.path,
+                               wave_bytes(36 + samples.size() + behind.size(), samples.size(), samples) + behind);
+        CHECK(frames_of(file.path, &note) == right);
+        CHECK(note.empty());
+    }
+}
+
 TEST_CASE("a wave that is cut anywhere is read up to its last whole frame") {
     const WaveFile file;
     const std::string samples = samples_of_wave(), bytes = wave_bytes(36 + samples.size(), samples.size(), samples);

@@ -8,11 +8,14 @@
 #include "dsp/signal/filter/resample.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -75,8 +78,10 @@ Flatness flatness(const vibration::FrequencyResponse& response, const vibration:
 }
 
 /// The drive signal of the recording, without and with the equaliser.
-Programme play(const EqualiseSettings& settings, const vibration::Equaliser& equaliser, double limit) {
+Programme play(const EqualiseSettings& settings, const vibration::Equaliser& equaliser, double limit,
+               std::vector<std::string>& notes) {
     const sound::Sound sound = sound::load_sound(settings.signal);
+    if (!sound.note.empty()) notes.push_back(fmt::format("{}: {}", settings.signal.string(), sound.note));
     const std::vector<double> samples = signal::resample(sound::mix_to_mono(sound), sound.rate, equaliser.rate);
     std::vector<double> plain, equalised;
     signal::Fir fir(equaliser.taps);
@@ -105,7 +110,7 @@ Equalisation equalise(const EqualiseSettings& settings) {
     made.limit = vibration::voltage_within(made.actuator->voltage_limit, made.actuator->current_limit,
                                            made.actuator->resistance);
     made.flat = flatness(response, made.equaliser, made.limit / std::abs(settings.volts));
-    if (!settings.signal.empty()) made.programme = play(settings, made.equaliser, made.limit);
+    if (!settings.signal.empty()) made.programme = play(settings, made.equaliser, made.limit, made.notes);
     return made;
 }
 

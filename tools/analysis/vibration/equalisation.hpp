@@ -51,6 +51,7 @@ struct Equalisation {
     double limit = 0.0;  ///< drive limit, V
     Flatness flat;
     std::optional<Programme> programme;  ///< with a signal only
+    std::vector<std::string> notes{};  ///< defects of the signal's header
 };
 
 /// Throws Error.

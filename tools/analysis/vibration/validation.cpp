@@ -147,6 +147,7 @@ void validate(Validation& validation, std::size_t index, const ValidateSettings&
     pair.output = run.name();
     pair.thresholds = validation.thresholds;
     if (!recording.full_scale) pair.notes.push_back("the recording is not calibrated: its level cannot be compared");
+    if (!recording.file_note.empty()) pair.notes.push_back(recording.file_note);
     if (recording.rate_estimated) pair.notes.push_back("the rate of the saw was estimated from the recording");
     try {
         compare_takes(pair, signal::Take(std::span<const float>(reference), recording.sample_rate),

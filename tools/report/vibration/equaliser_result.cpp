@@ -114,7 +114,8 @@ const Fields<Equalisation>& filter_fields() {
             .child("headroom", "drive", programme_fields(), [](const E& e) -> const auto& { return e.programme; })
             .omitted()
             .rows("bands", "third octaves", band_fields(), [](const E& e) -> const auto& { return e.flat.bands; })
-            .on_pages();
+            .on_pages()
+            .notes("notes", "note", &E::notes);
     return all;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace tactus::report {
 
@@ -62,6 +63,13 @@ const Fields<Recorded>& recorded_fields() {
     return all;
 }
 
+std::vector<std::string> file_notes(const MadeSawModel& m) {
+    std::vector<std::string> notes;
+    for (const sound::Recording& recording : m.made->set.recordings)
+        if (!recording.file_note.empty()) notes.push_back(recording.file_note);
+    return notes;
+}
+
 std::string stretch_text(const MadeSawModel& m) {
     const sound::Stretch& s = m.settings->stretch;
     if (s.is_whole()) return {};
@@ -87,7 +95,8 @@ const Fields<MadeSawModel>& saw_model_fields() {
             .text("", "stretch", stretch_text)
             .range("band_hz", "distances from", significant(6, "Hz"),
                    [](const M& m) { return std::optional(std::pair(m.settings->lowest, m.settings->highest)); })
-            .rows("rows", "distances", recorded_fields(), [](const M& m) -> const auto& { return m.made->recordings; });
+            .rows("rows", "distances", recorded_fields(), [](const M& m) -> const auto& { return m.made->recordings; })
+            .notes("notes", "note", file_notes);
     return all;
 }
 
