@@ -368,8 +368,30 @@ private:
         return factor;
     }
 
+    /// "1.7000000000001953e+18" as "1700000000000195300": its digits with the point moved. Empty for other text.
+    static std::string without_exponent(std::string_view field) {
+        const std::size_t mark = std::min(field.find_first_of("eE"), field.size());
+        std::string_view power = field.substr(std::min(mark + 1, field.size()));
+        if (power.starts_with('+')) power.remove_prefix(1);
+        int shift = 0;
+        const auto [end, failure] = std::from_chars(power.data(), power.data() + power.size(), shift);
+        if (failure != std::errc{} || end != power.data() + power.size() || shift < 0 || shift > 18) return {};
+        std::string out(field.substr(0, mark));
+        if (out.find_first_not_of("+-0123456789.,") != std::string::npos) return {};
+        std::size_t point = std::min(out.find_first_of(".,"), out.size());
+        if (point == out.size()) out += '.';
+        for (; shift > 0; --shift, ++point) {
+            if (point + 1 == out.size()) out += '0';
+            std::swap(out[point], out[point + 1]);
+        }
+        if (out.back() == '.' || out.back() == ',') out.pop_back();
+        return out;
+    }
+
     /// Epochs have more digits than a double: from 1e9 on, whole units are counted from those of the first time.
     double since_origin(std::string_view field, double number) {
+        std::string plain;
+        if (field.find_first_of("eE") != std::string_view::npos) field = plain = without_exponent(field);
         if (!has_numbers_ && std::abs(number) >= 1e9 && std::abs(number) < 9e18)
             origin_ = static_cast<std::int64_t>(number);
         has_numbers_ = true;
@@ -377,7 +399,8 @@ private:
         std::int64_t whole = 0;
         const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), whole);
         const std::string_view rest(end, field.size() - static_cast<std::size_t>(end - field.data()));
-        if (failure != std::errc{} || (!rest.empty() && rest.front() != '.' && rest.front() != ','))
+        if (failure != std::errc{} || (!rest.empty() && rest.front() != '.' && rest.front() != ',') ||
+            rest.find_first_not_of("0123456789", 1) != std::string_view::npos)
             return number - static_cast<double>(origin_);
         double fraction = 0.0;
         if (!rest.empty()) {

@@ -4,7 +4,12 @@
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdint>
+
 using namespace tactus;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -13,6 +18,25 @@ table::SampleLog read(std::string_view text, table::LogSelection selection = {})
 }
 
 } // namespace
+
+TEST_CASE("long times with an exponent keep their digits") {
+    std::string micros = "time_us,a\n", seconds = "time,a\n", nanos = "timestamp,a\n", commas = "time_us;a\n";
+    for (int i = 0; i < 50; ++i) {
+        micros += fmt::format("{:.12e},{}\n", 1.999e9 + 1000.0 * i, i);
+        seconds += fmt::format("{:.12e},{}\n", 1.7e9 + 0.005 * i, i);
+        nanos += fmt::format("1.{:018d}e+18,{}\n", 700000000000000001 + std::int64_t{1000001} * i, i);
+        commas += fmt::format("1,999{:03d}e+09;{}\n", i, i);
+    }
+    const auto step = [](const table::SampleLog& log) { return (log.times.back() - log.times.front()) / 49.0; };
+    CHECK(step(table::read_sample_log(micros, "l.csv", {})) == Approx(1e-3));
+    const table::SampleLog dates = table::read_sample_log(seconds, "l.csv", {});
+    CHECK(step(dates) == Approx(5e-3));
+    CHECK_THAT(dates.form.time, ContainsSubstring("dates in s"));
+    const table::SampleLog phone = table::read_sample_log(nanos, "l.csv", {});
+    for (std::size_t i = 1; i < 50; ++i)
+        CHECK(phone.times[i] - phone.times[0] == Approx(1.000001e-3 * static_cast<double>(i)).epsilon(1e-9));
+    CHECK(step(table::read_sample_log(commas, "l.csv", {})) == Approx(1e-3));
+}
 
 TEST_CASE(
     "a log's time column and axes are found by their names, milliseconds "
