@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "assets/table/csv_file.hpp"
+#include "assets/table/decimal_sign.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
 
@@ -29,18 +30,38 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// Splits a line at commas or semicolons, keeping empty cells; otherwise at blanks.
-std::vector<std::string_view> cells_of(std::string_view line) {
+/// '\0': blanks, of which several separate once.
+constexpr char blanks = '\0';
+
+bool is_remark(std::string_view line) { return line.front() == '#' || line.front() == '*' || line.front() == ';'; }
+
+/// Of the whole file, because with semicolons or tabs a comma is decimal.
+char separator_of(std::string_view text) {
+    bool has_comma = false, has_tab = false;
+    while (!text.empty()) {
+        const std::size_t end = text.find('\n');
+        const std::string_view line = trimmed(text.substr(0, end));
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        if (line.empty() || is_remark(line)) continue;
+        if (line.find(';') != std::string_view::npos) return ';';
+        has_comma = has_comma || line.find(',') != std::string_view::npos;
+        has_tab = has_tab || line.find('\t') != std::string_view::npos;
+    }
+    return has_comma && has_tab ? '\t' : has_comma ? ',' : blanks;
+}
+
+/// Splits a line, keeping empty cells but those at the end.
+std::vector<std::string_view> cells_of(std::string_view line, char separator) {
     std::vector<std::string_view> cells;
-    const bool has_comma = line.find_first_of(",;") != std::string_view::npos;
-    const std::string_view separators = has_comma ? ",;" : " \t";
     while (true) {
-        const std::size_t end = line.find_first_of(separators);
+        const std::size_t end = separator == blanks ? line.find_first_of(" \t") : line.find(separator);
         const std::string_view cell = trimmed(line.substr(0, end));
-        if (has_comma || !cell.empty()) cells.push_back(cell);
-        if (end == std::string_view::npos) return cells;
+        if (separator != blanks || !cell.empty()) cells.push_back(cell);
+        if (end == std::string_view::npos) break;
         line.remove_prefix(end + 1);
     }
+    while (cells.size() > 1 && cells.back().empty()) cells.pop_back();
+    return cells;
 }
 
 std::optional<double> number_in(std::string_view text) {
@@ -58,15 +79,19 @@ public:
     ResponseFile read() {
         const std::string text = file::read_whole_file(path_);
         std::string_view rest = text;
+        const char separator = separator_of(text);
+        sign_ = table::DecimalSign(separator);
         while (!rest.empty()) {
             const std::size_t end = rest.find('\n');
             const std::string_view line = trimmed(rest.substr(0, end));
             rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
             if (++line_ > max_lines) fail(fmt::format("longer than {} lines", max_lines));
             if (line.empty()) continue;
-            if (line.front() == '#' || line.front() == '*' || line.front() == ';') remark(line.substr(1));
-            else row(cells_of(line));
+            if (is_remark(line)) remark(line.substr(1));
+            else row(cells_of(line, separator));
         }
+        if (const auto doubt = sign_.doubt())
+            throw Error({path_.string(), doubt->line, doubt->line > 0 ? 1 : 0}, doubt->why);
         vibration::FrequencyResponse& response = file_.identified.response;
         if (response.hz.size() < 3) throw Error({path_.string(), 0, 0}, "a response needs at least 3 frequencies");
         if (!has_phase_) assume_minimum_phase(response);
@@ -75,6 +100,13 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& message) const { throw Error({path_.string(), line_, 1}, message); }
+
+    /// The number of a cell, which may have a decimal comma.
+    std::optional<double> number_of_cell(std::string_view cell) {
+        if (const auto refused = sign_.note(cell, line_)) fail(*refused);
+        const std::optional<double> number = cell.empty() ? std::nullopt : sign_.parse(cell);
+        return number && std::isfinite(*number) ? number : std::nullopt;
+    }
 
     void remark(std::string_view text) {
         const std::size_t equals = text.find('=');
@@ -109,17 +141,28 @@ private:
             fail("no columns of numbers: frequency in Hz, level in dB and phase in degrees are expected");
         has_phase_ = phase_ != none;
         named_ = true;
+        columns_ = cells.size();
     }
 
     void row(const std::vector<std::string_view>& cells) {
         vibration::FrequencyResponse& response = file_.identified.response;
-        if (!number_in(cells.front())) {
+        if (!number_of_cell(cells.front())) {
             if (named_ || !response.hz.empty()) fail(fmt::format("'{}' is not a number", cells.front()));
             return names(cells);
         }
         if (!named_ && response.hz.empty()) has_phase_ = cells.size() > 2;
+        // Half of a number with a decimal comma would be taken for a column.
+        if (cells.size() > columns_)
+            fail(
+                named_
+                    ? fmt::format("the row has {} cells and there are {} names; are commas decimal here? Then separate "
+                                  "the cells by semicolons or tabs",
+                                  cells.size(), columns_)
+                    : fmt::format("the row has {} cells; without names there are at most {}: frequency in Hz, level in "
+                                  "dB and phase in degrees",
+                                  cells.size(), columns_));
         const auto value = [&](std::size_t column) {
-            const auto read = column < cells.size() ? number_in(cells[column]) : std::nullopt;
+            const auto read = column < cells.size() ? number_of_cell(cells[column]) : std::nullopt;
             if (!read) fail(fmt::format("column {} is not a number", column + 1));
             return *read;
         };
@@ -133,7 +176,7 @@ private:
         response.gain.push_back(std::polar(std::pow(10.0, level / 20.0), phase));
         if (coherence_ != none) response.coherence.push_back(std::clamp(value(coherence_), 0.0, 1.0));
         for (std::size_t i = 0; i < orders_.size(); ++i) {
-            const auto ratio = orders_[i] < cells.size() ? number_in(cells[orders_[i]]) : std::nullopt;
+            const auto ratio = orders_[i] < cells.size() ? number_of_cell(cells[orders_[i]]) : std::nullopt;
             file_.identified.distortions[i].ratio.push_back(ratio.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
     }
@@ -152,7 +195,9 @@ private:
     int line_ = 0;
     bool named_ = false, has_phase_ = false;
     std::size_t hz_ = 0, level_ = 1, phase_ = 2, coherence_ = none;
+    std::size_t columns_ = 3;  // without names
     std::vector<std::size_t> orders_;
+    table::DecimalSign sign_{','};
 };
 
 }  // namespace

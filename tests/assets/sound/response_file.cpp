@@ -5,6 +5,7 @@
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -66,6 +67,29 @@ TEST_CASE("tables of other programs are read: blanks, remarks, no names, no phas
     for (int i = 0; i < 20; ++i) rising += std::to_string(6.0206 * i) + ";" + std::to_string(std::exp2(i)) + "\r\n";
     const sound::ResponseFile guessed = read_response(folder, rising);
     for (const auto& gain : guessed.identified.response.gain) CHECK(std::arg(gain) == Approx(M_PI / 2.0).margin(1e-3));
+}
+
+TEST_CASE(
+    "numbers with decimal commas are read between semicolons or tabs, and rows with more cells than names refused") {
+    const TemporaryFolder folder;
+    const char* const with_points = "Freq(Hz);SPL(dB);Phase(degrees)\n20.5;-3.1;10.0\n40.5;-2.2;20.0\n80.5;-1.4;30.0\n";
+    const auto right = read_response(folder, with_points).identified.response;
+    std::string commas = with_points, tabs;
+    std::ranges::replace(commas, '.', ',');
+    tabs = commas;
+    std::ranges::replace(tabs, ';', '\t');
+    for (const std::string& text : {commas, tabs}) {
+        INFO(text);
+        const auto read = read_response(folder, text).identified.response;
+        CHECK(read.hz == right.hz);
+        CHECK(read.gain == right.gain);
+    }
+    std::string doubtful = "hz;db;deg\n";
+    for (const char* const row : {"1,250;-3;10\n", "2,500;-2;20\n", "5,125;-1;30\n"}) doubtful += row;
+    CHECK_THROWS_WITH(read_response(folder, doubtful), ContainsSubstring("r.csv:2") && ContainsSubstring("1,250"));
+    CHECK_THROWS_WITH(read_response(folder, "hz,db,deg\n20,5,-3,1,10,0\n40,5,-2,2,20,0\n"),
+                      ContainsSubstring("r.csv:2") && ContainsSubstring("6 cells") && ContainsSubstring("decimal"));
+    CHECK_THROWS_WITH(read_response(folder, "20,5,-3,1,10,0\n40,5,-2,2,20,0\n"), ContainsSubstring("6 cells"));
 }
 
 TEST_CASE("a table that is no response is refused with its line") {
