@@ -11,6 +11,7 @@
 #include <cctype>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace tactus::sound {
 
@@ -28,8 +29,9 @@ std::pair<double, table::ColumnUnit> parse_measure(const std::string& text) {
     return {quantity.value / si, {unit, si, quantity.dimension}};
 }
 
-/// What follows `key` and ':' or '=', up to a ';' or the end of the line.
-std::optional<std::string> value_of(std::string_view comment, std::string_view key) {
+/// What follows each `key` and ':' or '=', up to a ';' or the end of the line.
+std::vector<std::string> values_of(std::string_view comment, std::string_view key) {
+    std::vector<std::string> values;
     const std::string small = lower(comment);
     for (std::size_t at = 0; (at = small.find(key, at)) != std::string::npos; at += key.size()) {
         if (at > 0 && std::isalpha(static_cast<unsigned char>(small[at - 1]))) continue;
@@ -38,9 +40,33 @@ std::optional<std::string> value_of(std::string_view comment, std::string_view k
         from = small.find_first_not_of(" \t", from + 1);
         if (from == std::string::npos) continue;
         const std::size_t end = std::min(small.find_first_of(";\r\n", from), small.size());
-        return std::string(table::trimmed(comment.substr(from, end - from)));
+        values.emplace_back(table::trimmed(comment.substr(from, end - from)));
     }
-    return std::nullopt;
+    return values;
+}
+
+/// "fs = 48 kHz" is a sample rate, not a full scale.
+bool is_rate_or_time(const Calibration& value) {
+    const std::optional<table::ColumnUnit> unit = table::parse_column_unit(value.unit);
+    return unit && (unit->is_time() || unit->dimension == parse_unit("Hz").dimension);
+}
+
+bool is_same(const Calibration& a, const Calibration& b) {
+    return a.is_acceleration == b.is_acceleration &&
+           std::abs(a.factor * a.si - b.factor * b.si) <= 1e-6 * std::abs(b.factor * b.si);
+}
+
+/// The sensitivity that a comment states; none if it states none. Throws Error if it states several that differ.
+std::optional<Sensitivity> stated_sensitivity(std::string_view comment) {
+    std::optional<Sensitivity> found;
+    for (const std::string& text : values_of(comment, "sensitivity")) {
+        Sensitivity one = parse_sensitivity(text);
+        if (found && std::abs(one.volts / one.unit.si - found->volts / found->unit.si) >
+                         1e-9 * std::abs(one.volts / one.unit.si))
+            throw Error(fmt::format("it states several sensitivities, {} and {}", found->text, one.text));
+        found = std::move(one);
+    }
+    return found;
 }
 
 }  // namespace
@@ -98,14 +124,27 @@ Calibration through_sensor(const Calibration& volts, const Sensitivity& sensitiv
 }
 
 std::optional<Calibration> stated_calibration(std::string_view comment) {
-    std::optional<std::string> text;
+    std::vector<Calibration> usable;
+    std::string why;
     for (const std::string_view key : {"fs", "full scale", "full-scale", "fullscale", "calibration"})
-        if (!text) text = value_of(comment, key);
-    if (!text) return std::nullopt;
+        for (const std::string& text : values_of(comment, key)) {
+            try {
+                Calibration one = parse_calibration(text);
+                if (!is_rate_or_time(one)) usable.push_back(std::move(one));
+            } catch (const Error& error) {
+                if (why.empty()) why = error.message();
+            }
+        }
+    if (usable.empty() && why.empty()) return std::nullopt;
     try {
-        Calibration out = parse_calibration(*text);
+        if (usable.empty()) throw Error(why);
+        Calibration out = usable.front();
+        for (const Calibration& other : usable)
+            if (!is_same(other, out))
+                throw Error(fmt::format("it states several, {:.6g} {} and {:.6g} {}", out.factor, out.unit,
+                                        other.factor, other.unit));
         out.source = "the comment of the file";
-        if (const auto sensor = value_of(comment, "sensitivity")) out = through_sensor(out, parse_sensitivity(*sensor));
+        if (const auto sensor = stated_sensitivity(comment)) out = through_sensor(out, *sensor);
         return out;
     } catch (const Error& error) {
         Calibration unknown;

@@ -104,6 +104,23 @@ TEST_CASE("the header of a log calibrates it, a sensitivity makes volts an accel
     CHECK_THROWS_WITH(sound::parse_sensitivity("100 N/g"), ContainsSubstring("volts per unit"));
 }
 
+TEST_CASE("a rate in a comment is no full scale, and calibrations that differ are not used") {
+    const auto scale = [](const char* comment) { return sound::stated_calibration(comment)->factor; };
+    CHECK(scale("fs = 48 kHz; calibration: 98.1 m/s^2") == 98.1);
+    CHECK(scale("fs = 20 us; fs = 98.1 m/s^2") == 98.1);
+    CHECK(scale("fs = 48000; calibration: 98.1 m/s^2") == 98.1);
+    CHECK(scale("full scale = 98.1 m/s^2; calibration: 98.1 m/s^2") == 98.1);
+    CHECK_FALSE(sound::stated_calibration("fs = 48 kHz"));
+    for (const char* const comment : {"full scale = 49 m/s^2; calibration: 98.1 m/s^2",
+                                      "full scale = 10 V; x sensitivity: 100 mV/g; y sensitivity: 10 mV/g"}) {
+        CAPTURE(comment);
+        const auto stated = sound::stated_calibration(comment);
+        REQUIRE(stated);
+        CHECK_FALSE(stated->known);
+        CHECK_THAT(stated->remark, ContainsSubstring("states several"));
+    }
+}
+
 TEST_CASE("each channel of a log is calibrated by the sensitivity of its sensor") {
     const Temporary file("calibration.csv");
     write_log(file.path,
