@@ -78,6 +78,9 @@ private:
         if (open_.empty()) return root_ = std::move(value);
         Json& parent = *open_.back();
         if (parent.is_object()) {
+            if (const Json* earlier = parent.find(key_))
+                throw Error(fmt::format("'{}' is given twice, in lines {} and {}; keep one", key_.substr(0, 80),
+                                        earlier->line(), key_line_));
             value.set_line(key_line_);
             return parent[key_] = std::move(value);
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/json.hpp"
 
+#include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <nlohmann/json.hpp>
@@ -90,6 +91,21 @@ TEST_CASE("text that is no JSON is refused at its byte") {
     CHECK(Json::parse_or_null("{").is_null());
     CHECK(Json::parse_or_null("[1e999]").is_null());
     CHECK_THROWS_WITH(Json::parse("[1e999]"), ContainsSubstring("a number is out of range"));
+}
+
+TEST_CASE("a key that is given twice in an object is refused with both lines") {
+    const auto refusal = [](const char* text) {
+        try {
+            file::parse_json(text, "a.json");
+        } catch (const Error& error) {
+            return error.message();
+        }
+        return std::string();
+    };
+    CHECK(refusal("{\"kerf_mm\": 1,\n \"b\": 2,\n \"kerf_mm\": 3}") ==
+          "a.json: 'kerf_mm' is given twice, in lines 1 and 3; keep one");
+    CHECK(refusal("[{\"a\": {\"b\": [],\n\"b\": {}}}]") == "a.json: 'b' is given twice, in lines 1 and 2; keep one");
+    CHECK(refusal("[{\"a\": 1}, {\"a\": 2, \"b\": {\"a\": 3}}]").empty());
 }
 
 TEST_CASE("JSON nests at most a hundred values") {
