@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <numeric>
 #include <tuple>
 
@@ -94,10 +95,12 @@ double Words::number(const std::string& file) {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (code == std::errc::result_out_of_range) return value;
     if (word.empty()) throw Error(fmt::format("{}: cut short; copy the file again", file));
-    if (code != std::errc{} || end != word.data() + word.size())
+    const bool is_beyond_range = code == std::errc::result_out_of_range;
+    if ((code != std::errc{} && !is_beyond_range) || end != word.data() + word.size())
         throw Error(fmt::format("{}: '{}' is not a number", file, word.substr(0, 40)));
+    // An infinity, which is refused as a coordinate, or a number near 0: from_chars leaves the value for both.
+    if (is_beyond_range) value = std::strtod(std::string(word).c_str(), nullptr);
     return value;
 }
 

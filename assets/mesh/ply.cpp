@@ -56,6 +56,18 @@ public:
         throw Error(fmt::format("{}: unknown PLY type '{}'", file_, type));
     }
 
+    /// "3 words" or "12 bytes" that no element is read from; empty: none but blanks.
+    std::string rest() {
+        std::size_t count = 0;
+        if (coding_ == Coding::text) {
+            while (!words_.next().empty()) ++count;
+            return count == 0 ? "" : fmt::format("{} word{}", count, count == 1 ? "" : "s");
+        }
+        if (bytes_.find_first_not_of(" \t\r\n", at_) == std::string_view::npos) return "";
+        count = bytes_.size() - at_;
+        return fmt::format("{} byte{}", count, count == 1 ? "" : "s");
+    }
+
 private:
     template <typename T>
     T take() {
@@ -201,6 +213,9 @@ MeshText read_ply(const std::string& bytes, const std::string& file) {
     const Header header = header_of(bytes, file, mesh.frame, mesh.unit);
     Body body(std::string_view(bytes).substr(header.size), header.coding, file);
     for (const Element& element : header.elements) read_element(body, element, file, mesh.surface, mesh.notes);
+    if (const std::string rest = body.rest(); !rest.empty())
+        mesh.notes.push_back(fmt::format(
+            "{} behind the last element were not read: the header states fewer elements than the file has", rest));
     return mesh;
 }
 

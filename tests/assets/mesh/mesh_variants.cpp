@@ -143,6 +143,53 @@ TEST_CASE("triangle strips of a PLY are read with their turns, other elements ar
     CHECK_THROWS_AS(mesh::load_mesh(place / "wrong.ply"), Error);
 }
 
+TEST_CASE("coordinates beyond the range of a number are refused, and those too small for one are 0") {
+    const TemporaryFolder folder;
+    const auto load = [&](const std::string& name, const std::string& x) {
+        const bool is_stl = name.ends_with("stl");
+        file::write_whole_file(folder / name,
+                               (is_stl ? "solid a\nfacet normal 0 0 1\nouter loop\nvertex " + x +
+                                             " 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
+                                       : "v " + x + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+        return mesh::load_mesh(folder / name);
+    };
+    for (const char* const name : {"a.stl", "a.obj"}) {
+        CAPTURE(name);
+        for (const char* const huge : {"1e400", "-1e400", "1e300"})
+            CHECK_THROWS_WITH(load(name, huge), ContainsSubstring("coordinates are not numbers"));
+        CHECK(load(name, "1e-400").triangles.size() == 1);
+        CHECK_THROWS_WITH(load(name, "1e400x"), ContainsSubstring("is not a number"));
+    }
+}
+
+TEST_CASE("faces of a PLY that its header does not count are noted") {
+    const TemporaryFolder folder;
+    const std::string head =
+                          "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                          "property list uchar int vertex_indices\nend_header\n",
+                      body = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n";
+    const auto notes = [&](const std::string& bytes) {
+        file::write_whole_file(folder / "a.ply", bytes);
+        mesh::MeshOrigin origin;
+        mesh::load_mesh(folder / "a.ply", 1.0, &origin);
+        return origin.notes.empty() ? std::string() : origin.notes.front();
+    };
+    CHECK(notes("ply\nformat ascii 1.0\n" + head + body + "\n").empty());
+    CHECK_THAT(notes("ply\nformat ascii 1.0\n" + head + body + "3 0 1 3\n"),
+               ContainsSubstring("4 words behind the last"));
+    std::string binary;
+    for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f})
+        binary.append(reinterpret_cast<const char*>(&x), 4);
+    const auto face = [](int a, int b, int c) {
+        std::string bytes = "\3";
+        for (const int n : {a, b, c}) bytes.append(reinterpret_cast<const char*>(&n), 4);
+        return bytes;
+    };
+    binary = "ply\nformat binary_little_endian 1.0\n" + head + binary + face(0, 1, 2);
+    CHECK(notes(binary + "\n").empty());
+    CHECK_THAT(notes(binary + face(0, 1, 3)), ContainsSubstring("13 bytes behind the last"));
+}
+
 TEST_CASE("an OBJ with continued lines and a byte-order mark is read, its lines and points are counted") {
     const TemporaryFolder place;
     file::write_whole_file(
