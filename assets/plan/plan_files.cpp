@@ -24,6 +24,7 @@ void change_files(CasePlan& plan, const Change& change) {
         change(all.donor.file);
         for (auto* mesh : {&all.jaw, &all.tumour})
             if (*mesh) change((*mesh)->file);
+        for (reconstruction::KeptGuide& guide : all.guides) change(guide.mesh.file);
         step.reconstruction = std::make_shared<reconstruction::Reconstruction>(std::move(all));
     }
 }

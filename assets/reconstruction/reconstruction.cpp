@@ -36,6 +36,39 @@ MeshFile mesh_of(const Members& item) {
     return mesh;
 }
 
+Json json_of(const KeptGuide& guide) {
+    Json json{{"name", guide.name},     {"bone", guide.is_of_jaw ? "jaw" : "fibula"},
+              {"cut", guide.cut},       {"sides", guide.sides},
+              {"turn_rad", guide.turn}, {"mesh", json_of(guide.mesh)}};
+    if (!guide.label.empty()) json["label"] = guide.label;
+    return json;
+}
+
+/// A whole number of a range.
+int whole_of(const Members& item, const char* key, int low, int high) {
+    const double value = item.number(key);
+    if (!(value >= low && value <= high) || value != std::floor(value))
+        item.fail(fmt::format("has a '{}' that is not a whole number from {} to {}", key, low, high));
+    return static_cast<int>(value);
+}
+
+KeptGuide guide_of(const Members& item) {
+    KeptGuide guide;
+    guide.name = item.name();
+    const std::string bone = item.text("bone");
+    if (bone != "jaw" && bone != "fibula") item.fail("must have the 'bone' \"jaw\" or \"fibula\"");
+    guide.is_of_jaw = bone == "jaw";
+    guide.cut = whole_of(item, "cut", 0, 2);
+    guide.sides = whole_of(item, "sides", 1, 3);
+    guide.turn = item.number("turn_rad");
+    if (!(std::abs(guide.turn) <= 2.0 * std::numbers::pi + 1e-9)) item.fail("has a 'turn_rad' of more than a turn");
+    if (item.has("label")) guide.label = item.text("label");
+    const auto mesh = item.object("mesh");
+    if (!mesh) item.fail("has no 'mesh'");
+    guide.mesh = mesh_of(*mesh);
+    return guide;
+}
+
 Json json_of(const FibulaInputs& inputs) {
     Json planes = Json::array(), along = Json::array();
     for (const JawPlane& plane : inputs.planes) {
@@ -113,6 +146,11 @@ Json json_of(const Reconstruction& all) {
     json["donor"] = json_of(all.donor);
     if (all.jaw) json["jaw"] = json_of(*all.jaw);
     if (all.tumour) json["tumour"] = json_of(*all.tumour);
+    if (!all.guides.empty()) {
+        Json guides = Json::array();
+        for (const KeptGuide& guide : all.guides) guides.push_back(json_of(guide));
+        json["guides"] = guides;
+    }
     add_members(json, all.flap);
     return json;
 }
@@ -126,6 +164,12 @@ Reconstruction reconstruction_of(const Json& json, const std::string& where) {
     all.donor = mesh_of(*donor);
     if (jaw) all.jaw = mesh_of(*jaw);
     if (tumour) all.tumour = mesh_of(*tumour);
+    constexpr std::size_t max_guides = 100;
+    for (const Members& guide : item.list("guides", max_guides)) {
+        all.guides.push_back(guide_of(guide));
+        const auto is_same = [&](const KeptGuide& other) { return other.name == all.guides.back().name; };
+        if (std::ranges::count_if(all.guides, is_same) > 1) guide.fail("has a name that another guide has");
+    }
     all.flap = flap_of(item);
     return all;
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::reconstruction {
 
@@ -18,11 +19,23 @@ struct MeshFile {
     std::uint64_t hash = 0;  ///< of the file's bytes
 };
 
+/// A cutting guide that was made of the plan: what it was made of, and its mesh.
+struct KeptGuide {
+    std::string name;
+    bool is_of_jaw = false;  ///< else of the donor
+    int cut = 0;  ///< of the jaw: 1 the first, 2 the last; 0: all
+    int sides = 3;  ///< walls of its slots, 1 to 3
+    double turn = 0.0;  ///< rad, of the approach
+    std::string label;  ///< engraved; empty: the plan's title
+    MeshFile mesh;  ///< in the frame of its bone
+};
+
 struct Reconstruction {
     FibulaInputs inputs;  ///< without surfaces, which are in the files
     Flap flap;
     MeshFile donor;
     std::optional<MeshFile> jaw, tumour;
+    std::vector<KeptGuide> guides{};
 };
 
 /// Converts to JSON in m and rad; numbers read back to the same bits.

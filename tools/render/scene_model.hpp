@@ -122,7 +122,9 @@ public:
     const std::vector<Label>& labels() const { return labels_; }
     /// The plates with their screws, the implants and the sites that are drawn from the next picture on, in the frame of the case;
     /// at first those of the plan's file. Null: none.
-    void use_hardware(std::shared_ptr<const reconstruction::Reconstruction> of);
+    /// `folder`: of the plan, for the meshes of its guides.
+    void use_hardware(std::shared_ptr<const reconstruction::Reconstruction> of,
+                      const std::filesystem::path& folder = {});
     /// Whether sections show the density of what is cut, from the next picture on. Files are read beside the pictures, and
     /// sections are flat until then; `waits`: pictures wait for them, and for the vessels of a flap, which are computed
     /// beside the pictures, too.

@@ -39,7 +39,7 @@ void SceneModel::take_names() {
                     is_coloured = is_coloured && plan.fragments[a].colour != plan.fragments[b].colour;
             for (const plan::PlanFragment& fragment : plan.fragments)
                 named.push_back({fragment.name, is_coloured ? std::optional(fragment.colour) : std::nullopt});
-            use_hardware(plan::state_of(plan).reconstruction);
+            use_hardware(plan::state_of(plan).reconstruction, std::filesystem::path(scene.plan).parent_path());
             take_vessels(scene.plan, scene.plan, plan);
         } catch (const Error&) {
             named.clear();  // the run says what is wrong

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plates with their screws, implants and sites of a plan.
+#include "assets/plan/case_plan.hpp"
+#include "assets/reconstruction/flap_files.hpp"
 #include "assets/reconstruction/reconstruction.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/render/flap_scene.hpp"
+#include "tools/render/scene_colours.hpp"
 #include "tools/render/scene_model.hpp"
 
 namespace tactus::render {
@@ -23,7 +27,8 @@ void append(geometry::SurfacePatch& patch, const display::PictureMesh& mesh) {
 
 }  // namespace
 
-void SceneModel::use_hardware(std::shared_ptr<const reconstruction::Reconstruction> of) {
+void SceneModel::use_hardware(std::shared_ptr<const reconstruction::Reconstruction> of,
+                              const std::filesystem::path& folder) {
     if (of == hardware_of_) return;
     hardware_of_ = std::move(of);
     for (const HardwareMesh& one : hardware_) renderer_.meshes().remove(one.mesh);
@@ -42,6 +47,16 @@ void SceneModel::use_hardware(std::shared_ptr<const reconstruction::Reconstructi
     };
     for (const Hardware& one : render::hardware_of(hardware_of_->flap)) add(one);
     for (const Hardware& one : sites_of(hardware_of_->flap)) add(one).label = one.name;
+    for (const reconstruction::KeptGuide& guide : hardware_of_->guides) {
+        const Vec3 colour = scene_colours::guide_colour;
+        try {
+            const geometry::TriangleSurface surface =
+                reconstruction::read_surface(plan::file_of(guide.mesh.file, folder));
+            add({"guide " + guide.name, colour, {picture_mesh(surface, {}, {&colour, 1})}});
+        } catch (const Error&) {
+            // Its file was moved or removed: the plan can make it again.
+        }
+    }
 }
 
 void SceneModel::show_hardware() {

@@ -148,7 +148,7 @@ void SceneModel::use_plan(const std::filesystem::path& file, const plan::CasePla
     if (scene == outline_.scenes.end()) return;
     plan_written_ = written;
     try {
-        use_hardware(plan::state_of(plan).reconstruction);
+        use_hardware(plan::state_of(plan).reconstruction, file.parent_path());
         take_vessels(scene->plan, file, plan);
     } catch (const Error&) {
         // The run says what is wrong.

@@ -303,6 +303,8 @@ reconstruction::Reconstruction jaw_of(double third) {
     all.donor = {"fibula.stl", 5};
     all.jaw = reconstruction::MeshFile{"jaw.stl", 6};
     all.tumour = reconstruction::MeshFile{"tumour.stl", 7};
+    all.guides = {{"chin", true, 2, 1, third, "P-0012", {"guide-chin.stl", 8}},
+                  {"leg", false, 0, 3, -third, "", {"guide-leg.stl", 9}}};
     all.flap.vessels = {{"a", reconstruction::VesselKind::artery, 1.5e-3, {{0, 0, third}, {0, 0, 0.2}}},
                         {"v", reconstruction::VesselKind::vein, 2e-3, {{0, 0, 0.1}, {0, third, 0.2}}}};
     all.flap.perforators = {{"p", {third, 0.0, 0.1}}};

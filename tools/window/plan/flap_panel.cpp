@@ -53,6 +53,29 @@ void FlapPanel::line(const char* what, const Named& one, Form form, std::vector<
     ImGui::PopID();
 }
 
+void FlapPanel::ask_guide() {
+    Form form;
+    form.kind = Kind::guide;
+    form.name = "guide-1";
+    const auto all = flap_.reconstruction();
+    for (int n = 2;
+         all && std::ranges::find(all->guides, form.name, &reconstruction::KeptGuide::name) != all->guides.end(); ++n)
+        form.name = fmt::format("guide-{}", n);
+    open(std::move(form));
+}
+
+void FlapPanel::ask_paddle() {
+    Form form;
+    form.kind = Kind::paddle;
+    if (const auto all = flap_.reconstruction(); all && all->flap.paddle) {
+        form.at = in_mm(all->flap.paddle->at);
+        form.paddle_length = static_cast<float>(all->flap.paddle->length / mm);
+        form.paddle_width = static_cast<float>(all->flap.paddle->width / mm);
+        form.is_at_perforators = false;
+    }
+    open(std::move(form));
+}
+
 void FlapPanel::lists(const reconstruction::Reconstruction& all) {
     const auto add = [&](const char* label, Kind kind) {
         const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(label).x +
@@ -72,6 +95,15 @@ void FlapPanel::lists(const reconstruction::Reconstruction& all) {
     add("+ vessel", Kind::vessel);
     add("+ site", Kind::site);
     add("margin...", Kind::margin);
+    const auto ask = [&](const char* label, void (FlapPanel::*what)()) {
+        const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(label).x +
+                          2.0f * ImGui::GetStyle().FramePadding.x;
+        if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+        if (ImGui::SmallButton(label)) (this->*what)();
+        mark_spot(label);
+    };
+    ask("+ guide", &FlapPanel::ask_guide);
+    ask("paddle...", &FlapPanel::ask_paddle);
     for (const reconstruction::Plate& plate : all.flap.plates) {
         Form form;
         form.kind = Kind::plate;
@@ -104,6 +136,28 @@ void FlapPanel::lists(const reconstruction::Reconstruction& all) {
         form.at = in_mm(site.at);
         line("site", site, form, &reconstruction::Flap::sites);
     }
+    for (const reconstruction::KeptGuide& guide : all.guides) {
+        ImGui::PushID(guide.name.c_str());
+        if (ImGui::SmallButton("x"))
+            flap_.change([name = guide.name](reconstruction::Reconstruction& now) {
+                std::erase_if(now.guides, [&](const reconstruction::KeptGuide& known) { return known.name == name; });
+            });
+        mark_spot(fmt::format("remove guide {}", guide.name));
+        if (ImGui::IsItemHovered()) show_tooltip("a step of the plan; 'undo step' brings it back. Its file stays");
+        ImGui::SameLine();
+        if (ImGui::Selectable(fmt::format("guide {}", guide.name).c_str())) {
+            Form form;
+            form.kind = Kind::guide;
+            form.of = form.name = guide.name;
+            form.bone = guide.is_of_jaw ? 1 : 0, form.cut = guide.cut, form.sides = guide.sides;
+            form.turn = static_cast<float>(guide.turn / degree), form.label = guide.label;
+            open(std::move(form));
+        }
+        mark_spot(fmt::format("guide {}", guide.name));
+        ImGui::PopID();
+    }
+    if (all.flap.paddle)
+        ImGui::TextDisabled("paddle %.0f x %.0f mm", all.flap.paddle->length / mm, all.flap.paddle->width / mm);
     ImGui::TextDisabled("margin %.1f mm%s", all.flap.margin / mm, all.tumour ? "" : ", no tumour");
 }
 
@@ -163,6 +217,20 @@ bool FlapPanel::apply() {
             return flap_.change([f, kind](reconstruction::Reconstruction& all) {
                 put_named(all.flap.sites, f.of, {f.name, kind, vector_of(f.at) * mm});
             });
+        case Kind::guide: {
+            reconstruction::KeptGuide guide;
+            guide.name = f.name, guide.label = f.label;
+            guide.is_of_jaw = f.bone == 1, guide.cut = f.bone == 1 ? f.cut : 0, guide.sides = f.sides;
+            guide.turn = static_cast<double>(f.turn) * degree;
+            return flap_.make_guide(std::move(guide), f.of);
+        }
+        case Kind::paddle: {
+            FlapRun::PaddleChoice choice;
+            if (!f.is_at_perforators) choice.at = vector_of(f.at) * mm;
+            choice.length = static_cast<double>(f.paddle_length) * mm;
+            choice.width = static_cast<double>(f.paddle_width) * mm;
+            return flap_.lay_paddle(choice);
+        }
         case Kind::margin:
             return flap_.change([f, folder = run_.file().parent_path()](reconstruction::Reconstruction& all) {
                 if (!f.file.empty()) {
@@ -178,12 +246,13 @@ bool FlapPanel::apply() {
 void FlapPanel::dialog() {
     if (std::exchange(wants_dialog_, false)) ImGui::OpenPopup("reconstruction");
     if (!ImGui::BeginPopup("reconstruction")) return;
-    is_draft_ = form_.of.empty() && form_.kind != Kind::margin;
+    const bool has_name = form_.kind != Kind::margin && form_.kind != Kind::paddle;
+    is_draft_ = form_.of.empty() && has_name;
     ImGui::PushItemWidth(16.0f * ImGui::GetFontSize());
-    constexpr const char* titles[] = {"Plate", "Dental implant", "Vessel of the leg", "Vessel of the neck",
-                                      "Tumour and margin"};
+    constexpr const char* titles[] = {
+        "Plate",         "Dental implant", "Vessel of the leg", "Vessel of the neck", "Tumour and margin",
+        "Cutting guide", "Skin paddle"};
     ImGui::TextUnformatted(titles[static_cast<std::size_t>(form_.kind)]);
-    const bool has_name = form_.kind != Kind::margin;
     if (has_name) {
         if (ImGui::IsWindowAppearing() && form_.name.empty()) ImGui::SetKeyboardFocusHere();
         ImGui::InputText("name", &form_.name);
@@ -214,6 +283,26 @@ void FlapPanel::dialog() {
         case Kind::site:
             places();
             ImGui::Checkbox("vein", &form_.is_vein);
+            break;
+        case Kind::guide:
+            ImGui::Combo("for", &form_.bone, "fibula\0jaw\0");
+            mark_spot("bone of the guide");
+            if (form_.bone == 1) ImGui::Combo("cuts", &form_.cut, "both\0the first\0the last\0");
+            ImGui::SliderInt("walls of a slot", &form_.sides, 1, 3);
+            ImGui::SliderFloat("turn of the approach, degrees", &form_.turn, -180.0f, 180.0f, "%.0f");
+            mark_spot("turn of the guide");
+            ImGui::InputTextWithHint("label", "empty: the plan's title", &form_.label);
+            break;
+        case Kind::paddle:
+            ImGui::Checkbox("at the perforators", &form_.is_at_perforators);
+            if (!form_.is_at_perforators) places();
+            ImGui::SliderFloat("length, mm", &form_.paddle_length, 5.0f, 400.0f, "%.0f");
+            mark_spot("length of the paddle");
+            ImGui::SliderFloat("width, mm", &form_.paddle_width, 5.0f, 200.0f, "%.0f");
+            if (const auto all = flap_.reconstruction(); all && all->flap.paddle) {
+                if (ImGui::Button("remove") && flap_.remove_paddle()) ImGui::CloseCurrentPopup();
+                mark_spot("remove the paddle");
+            }
             break;
         case Kind::margin:
             ImGui::InputTextWithHint("tumour", "a closed mesh; empty: as it is", &form_.file);
@@ -261,7 +350,6 @@ void FlapPanel::draw() {
     ImGui::BeginDisabled(flap_.is_changing());
     lists(*all);
     ImGui::EndDisabled();
-    dialog();
     if (flap_.is_measuring() || flap_.is_changing()) ImGui::TextDisabled("...");
     for (const std::string& text : flap_.verdicts().warnings) {
         ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);

@@ -22,10 +22,15 @@ public:
     void tend();
     /// Draws nothing for a plan without a reconstruction.
     void draw();
+    /// Once per picture, also while it is not drawn: a form that a command asks for.
+    void draw_question() { dialog(); }
     FlapRun& flap() { return flap_; }
+    /// What commands open: the forms of a new guide and of the skin paddle.
+    void ask_guide();
+    void ask_paddle();
 
 private:
-    enum class Kind { plate, implant, vessel, site, margin };
+    enum class Kind { plate, implant, vessel, site, margin, guide, paddle };
     /// What is asked for in the dialog; mm.
     struct Form {
         Kind kind = Kind::plate;
@@ -35,6 +40,10 @@ private:
         float diameter = 4.0f, length = 14.0f, screw_length = 12.0f, height = 0.0f, margin = 10.0f;
         int screws = 2;
         bool is_vein = false;
+        float paddle_length = 60.0f, paddle_width = 40.0f, turn = 0.0f;  ///< turn: degrees
+        int bone = 0, cut = 0, sides = 3;  ///< bone: 0 the fibula, 1 the jaw
+        std::string label;
+        bool is_at_perforators = true;
     };
     void open(Form form);
     void lists(const reconstruction::Reconstruction& all);

@@ -4,10 +4,12 @@
 #include "assets/file/json.hpp"
 #include "assets/plan/plan_file.hpp"
 #include "dsp/reconstruction/plate_line.hpp"
+#include "tools/analysis/cutting_guide/kept_guide.hpp"
 #include "tools/analysis/leaving.hpp"
 #include "tools/analysis/plan/case_warnings.hpp"
 #include "tools/analysis/plan/flap_study.hpp"
 #include "tools/analysis/plan/flap_words.hpp"
+#include "tools/analysis/plan/paddle_study.hpp"
 #include "tools/analysis/plan/target_deviation.hpp"
 
 #include <fmt/format.h>
@@ -157,6 +159,44 @@ bool FlapRun::lay_plate(const PlateChoice& choice) {
             made.name = choice.name;
             put_named(all.flap.plates, choice.of, std::move(made));
         });
+}
+
+bool FlapRun::make_guide(reconstruction::KeptGuide guide, const std::string& of) {
+    return begin([guide, of, folder = run_.file().parent_path()](reconstruction::Reconstruction& all,
+                                                                 const plan::CasePlan& plan) mutable {
+        for (const reconstruction::KeptGuide& known : all.guides)
+            if (known.name == guide.name && guide.name != of)
+                throw Error(
+                    fmt::format("there is a guide '{}' already: choose another name, or click it in the list "
+                                "to make it again",
+                                guide.name));
+        reconstruction::KeptGuide made = guide;
+        analysis::make_kept_guide(made, plan, folder);
+        put_named(all.guides, of, std::move(made));
+    });
+}
+
+bool FlapRun::lay_paddle(const PaddleChoice& choice) {
+    return begin(
+        [choice, folder = run_.file().parent_path()](reconstruction::Reconstruction& all, const plan::CasePlan& plan) {
+            reconstruction::SkinPaddle paddle = all.flap.paddle.value_or(reconstruction::SkinPaddle{});
+            if (choice.at) {
+                paddle.at = *choice.at;
+            } else if (!all.flap.paddle) {
+                const analysis::FlapStudy study(plan, plan::state_of(plan), folder);
+                paddle.at = analysis::default_paddle_place(study.inputs(), study.fibula(), study.flap());
+            }
+            paddle.length = choice.length, paddle.width = choice.width;
+            (void)skin::paddle_in_leg(paddle, all.inputs);
+            all.flap.paddle = paddle;
+        });
+}
+
+bool FlapRun::remove_paddle() {
+    return change([](reconstruction::Reconstruction& all) {
+        if (!all.flap.paddle) throw Error("the plan has no skin paddle to remove");
+        all.flap.paddle.reset();
+    });
 }
 
 fs::path FlapRun::take_changed() {

@@ -15,6 +15,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +53,15 @@ public:
     };
     /// Lays a plate on the segments and the stumps.
     bool lay_plate(const PlateChoice& choice);
+    /// Makes a guide, which is kept in the plan; `of`: the one that it replaces, empty: it is another one. A guide that must
+    /// not be printed changes nothing.
+    bool make_guide(reconstruction::KeptGuide guide, const std::string& of = "");
+    struct PaddleChoice {
+        std::optional<Vec3> at;  ///< m, frame of the donor; none: where it is, or at the perforators
+        double length = 60e-3, width = 40e-3;  ///< m
+    };
+    bool lay_paddle(const PaddleChoice& choice);
+    bool remove_paddle();
     /// Whether a change that had begun was refused since; the reason is in the messages. Taken once.
     bool take_refusal() { return std::exchange(was_refused_, false); }
     /// The plan with the change, once it is made and has all that the run has written; empty: none. Taken once.

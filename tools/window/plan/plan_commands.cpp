@@ -66,6 +66,9 @@ void PlanPanel::add_commands(std::vector<Command>& all) {
     add("Show the fragments that the plan hides", "all", can, [this] { case_.show_hidden(); });
     add("Undo a step of the plan", "back", can, [this] { case_.give(plan::UndoStep{}); });
     add("Redo a step of the plan", "again", can, [this] { case_.give(plan::RedoStep{}); });
+    const auto can_change_flap = [this] { return flap_.flap().reconstruction() && !flap_.flap().is_changing(); };
+    add("Make a cutting guide", "print saw slot", can_change_flap, [this] { flap_.ask_guide(); });
+    add("Skin paddle of the flap", "perforator leg place", can_change_flap, [this] { flap_.ask_paddle(); });
     add(
         "Another name for the alternative", "rename",
         [this] { return case_.plan() && (case_.is_live() || case_.changes_document()); },

@@ -53,7 +53,10 @@ public:
     }
     void draw(const Fonts& fonts);
     /// Once per picture, also while it is not drawn: what a command asks for.
-    void draw_questions() { alternatives_.draw_question(); }
+    void draw_questions() {
+        alternatives_.draw_question();
+        flap_.draw_question();
+    }
     /// What its buttons do, by name.
     void add_commands(std::vector<Command>& all);
     /// Once per picture, before the run is looked at: begins the run again when its plan was changed beside it.

@@ -132,3 +132,44 @@ TEST_CASE("a part of a reconstruction is changed and renamed in place and takes 
     CHECK(all[1].value == 2);
     CHECK(all.size() == 3);
 }
+
+TEST_CASE("the skin paddle is a step of the plan, and so is its removal", "[virtual][slow]") {
+    FlapRig rig;
+    rig.flap.lay_paddle({std::nullopt, 70e-3, 30e-3});
+    REQUIRE(rig.is_made(6000));
+    const plan::CasePlan laid = plan::load_case_plan(rig.made);
+    const auto paddle = plan::state_of(laid).reconstruction->flap.paddle;
+    REQUIRE(paddle);
+    CHECK(paddle->length == 70e-3);
+    CHECK(paddle->width == 30e-3);
+    // One step more, and undo goes back before it.
+    REQUIRE(laid.place().head >= 0);
+    const int before = laid.steps[static_cast<std::size_t>(laid.place().head)].before;
+    const auto was = plan::state_of(laid, before).reconstruction->flap.paddle;
+    CHECK((!was || was->length != 70e-3));
+}
+
+// Costly: a guide is made, and another one is refused.
+TEST_CASE("a guide is a step of the plan with its settings, and one that must not be printed changes nothing",
+          "[virtual][slow]") {
+    FlapRig rig;
+    reconstruction::KeptGuide guide;
+    guide.name = "g/1";
+    rig.flap.make_guide(guide);
+    REQUIRE(rig.comes([&] { return rig.flap.take_refusal(); }, 6000));
+    CHECK(rig.has_told("'g/1' is no name of a guide: letters, digits, '-' and '_'"));
+    guide.name = "g1", guide.is_of_jaw = true, guide.cut = 1;
+    rig.flap.make_guide(guide);
+    REQUIRE(rig.is_made(60000));
+    const plan::CasePlan made = plan::load_case_plan(rig.made);
+    const auto guides = plan::state_of(made).reconstruction->guides;
+    REQUIRE(guides.size() == 1);
+    CHECK(guides[0].name == "g1");
+    CHECK(guides[0].is_of_jaw);
+    CHECK(guides[0].cut == 1);
+    const auto file = plan::file_of(guides[0].mesh.file, rig.made.parent_path());
+    CHECK(std::filesystem::exists(file));
+    // Undo takes it away.
+    const int before = made.steps[static_cast<std::size_t>(made.place().head)].before;
+    CHECK(plan::state_of(made, before).reconstruction->guides.empty());
+}
