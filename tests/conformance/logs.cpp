@@ -268,6 +268,23 @@ std::vector<Case> programs() {
         log_case("a column in mV below `# sensitivity: 100 mV/g`",
                  "# sensitivity: 100 mV/g\ntime_s,ax (mV)\n" + rows(millivolts), Result::note, "scale", {},
                  is_tone(level / std::sqrt(2.0) / gravity)),
+        log_case("columns in mV below a sensitivity for each axis",
+                 "# y sensitivity: 100 mV/g\n# x sensitivity: 50 mV/g\ntime_s,ax (mV),ay (mV)\n" +
+                     rows([](int n) { return fmt::format("{},{:.8f},0\n", n / rate, value(n) / gravity * 50.0); }),
+                 Result::note, "scale", {}, is_tone(level / std::sqrt(2.0) / gravity)),
+        log_case("the same without the channels",
+                 "# sensitivity: 100 mV/g\n# sensitivity: 50 mV/g\ntime_s,ax (mV),ay (mV)\n" +
+                     rows([](int n) { return fmt::format("{},{:.8f},0\n", n / rate, value(n)); }),
+                 Result::refused, "--sensitivity"),
+        log_case("a rate in kHz before its number (`Sampling rate (kHz): 1.6`)",
+                 "Sampling rate (kHz): 1.6\nax\n" + rows([](int n) { return fmt::format("{:.9f}\n", value(n)); }),
+                 Result::note, "1600 Hz"),
+        log_case("an interval in µs",
+                 "# Sample interval: 625 µs\nax\n" + rows([](int n) { return fmt::format("{:.9f}\n", value(n)); }),
+                 Result::note, "1600 Hz"),
+        log_case("a rate with a thousands separator (`1,600 Hz`)",
+                 "# Sample rate: 1,600 Hz\nax\n" + rows([](int n) { return fmt::format("{:.9f}\n", value(n)); }),
+                 Result::refused, "--sample-rate"),
         log_case("LabVIEW (`.lvm`)",
                  "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2024/05/17\n***End_of_Header***\t\n\t\nChannels\t1\t\n"
                  "Samples\t800\t\nY_Unit_Label\tm/s^2\t\nX0\t0.0E+0\t\nDelta_X\t0.000625\t\n"

@@ -185,6 +185,10 @@ Format stl() {
 
             {"cut short", "a.stl", bytes(binary.substr(0, binary.size() - 60)), Result::refused, "a.stl"},
             {"text that is no number", "a.stl", bytes(wrong), Result::refused, "not a number"},
+            {"a coordinate beyond the range of a number", "a.stl",
+             bytes("solid a\nfacet normal 0 0 1\nouter loop\nvertex -1e400 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                   "endfacet\nendsolid a\n"),
+             Result::refused, "not numbers"},
             {"no triangles", "a.stl", bytes(binary_stl({})), Result::refused, "no triangles"},
             {"a coordinate that is not a number", "a.stl",
              bytes(Bytes(binary).replace(96, 4, Bytes("\0\0\xc0\x7f", 4))), Result::refused, "not numbers"},
@@ -192,24 +196,26 @@ Format stl() {
 }
 
 Format ply_format() {
-    return {"PLY",
-            {"info", "FILE", "--json"},
-            {},
-            is_cube,
-            {
-                {"text", "a.ply", bytes(ply())},
-                {"binary, little endian", "a.ply", bytes(binary_ply(false))},
-                {"binary, big endian", "a.ply", bytes(binary_ply(true))},
-                {"faces of four points", "a.ply", bytes(square_ply())},
-                {"triangle strips", "a.ply", bytes(strip_ply()), Result::read, "", {}, volume_of(8000.0 / 6.0)},
-                {"edges", "a.ply", bytes(ply("element edge 1\nproperty int a\nproperty int b\n", "0 1\n")),
-                 Result::note, "1 elements 'edge'"},
-                {"points without faces", "a.ply", bytes(ply_header("ascii", "", 0) + ply_points()), Result::refused,
-                 "point cloud"},
-                {"a point that does not exist", "a.ply", bytes(ply_header("ascii", "", 1) + ply_points() + "3 0 1 9\n"),
-                 Result::refused, "does not exist"},
-                {"cut short", "a.ply", bytes(binary_ply(false).substr(0, 400)), Result::refused, "cut short"},
-            }};
+    return {
+        "PLY",
+        {"info", "FILE", "--json"},
+        {},
+        is_cube,
+        {
+            {"text", "a.ply", bytes(ply())},
+            {"binary, little endian", "a.ply", bytes(binary_ply(false))},
+            {"binary, big endian", "a.ply", bytes(binary_ply(true))},
+            {"faces of four points", "a.ply", bytes(square_ply())},
+            {"triangle strips", "a.ply", bytes(strip_ply()), Result::read, "", {}, volume_of(8000.0 / 6.0)},
+            {"edges", "a.ply", bytes(ply("element edge 1\nproperty int a\nproperty int b\n", "0 1\n")), Result::note,
+             "1 elements 'edge'"},
+            {"more faces than the header states", "a.ply", bytes(ply("", "3 0 1 2\n")), Result::note, "4 words behind"},
+            {"points without faces", "a.ply", bytes(ply_header("ascii", "", 0) + ply_points()), Result::refused,
+             "point cloud"},
+            {"a point that does not exist", "a.ply", bytes(ply_header("ascii", "", 1) + ply_points() + "3 0 1 9\n"),
+             Result::refused, "does not exist"},
+            {"cut short", "a.ply", bytes(binary_ply(false).substr(0, 400)), Result::refused, "cut short"},
+        }};
 }
 
 Format obj_format() {

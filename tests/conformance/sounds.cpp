@@ -131,6 +131,8 @@ Format waves() {
              "the file has"},
             {"sizes of INT32_MAX", "a.wav", bytes(wave(0x7fffffff, 0x7fffffff)), Result::note, "the file has"},
             {"a whole size that is wrong by 8", "a.wav", bytes(wave(whole + 8, size)), Result::note, "the file has"},
+            {"a size of samples that is too small", "a.wav", bytes(wave(36 + size / 10, size / 10)), Result::note,
+             "read as samples"},
             {"cut short",
              "a.wav",
              bytes(wave(whole, size, samples().substr(0, size / 2 + 1))),
@@ -198,6 +200,18 @@ Format others() {
                  "cut short",
                  {},
                  is_tone(2e-2, 0.5)},
+                {"AU, a size of samples that is too small",
+                 "a.au",
+                 [](const fs::path& path) {
+                     sound(SF_FORMAT_AU | SF_FORMAT_PCM_16)(path);
+                     Bytes whole = file::read_whole_file(path);
+                     whole.replace(8, 4, Bytes("\0\0\x06\x40", 4));
+                     file::write_whole_file(path, whole);
+                 },
+                 Result::note,
+                 "the rest was not read",
+                 {},
+                 is_tone(2e-2, 0.1)},
                 {"AU", "a.au", sound(SF_FORMAT_AU | SF_FORMAT_PCM_16)},
                 {"FLAC", "a.flac", sound(SF_FORMAT_FLAC | SF_FORMAT_PCM_24)},
                 {"FLAC, cut short", "a.flac", cut(sound(SF_FORMAT_FLAC | SF_FORMAT_PCM_24)), Result::refused, "a.flac"},

@@ -113,7 +113,7 @@ reconstruction::FlapVessel found_vessel(const FlapChoice& choice) {
         print(notes);
         return found;
     }
-    if (choice.branch != 0) throw Error("--branch is of a table: give --file VESSEL.csv instead of --of-scan");
+    if (choice.branch != 0) throw Error("--branch is of a file: give --file VESSEL.csv instead of --of-scan");
     return analysis::vessel_of_scan(plan::load_case_plan(choice.plan), choice.of_scan);
 }
 
@@ -250,7 +250,9 @@ Verb plan_vessel_verb() {
             const auto choice = choice_of(verb);
             verb.add("name", choice->name, "name of the vessel; one of that name is replaced").required();
             verb.add("--file", choice->file, "table of 'tactus vessel' (.csv) or curve of 3D Slicer (.mrk.json)");
-            verb.add("--branch", choice->branch, "branch of the table").range(0, 10000).shows_default();
+            verb.add("--branch", choice->branch, "branch of the table, or curve of the markups")
+                .range(0, 10000)
+                .shows_default();
             verb.add(
                 "--of-scan", choice->of_scan,
                 "take a vessel that the plan has of its scan into its reconstruction, which must be in that frame");

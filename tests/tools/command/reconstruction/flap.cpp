@@ -461,7 +461,7 @@ TEST_CASE("a vessel that was followed in a scan becomes a pedicle of the flap, o
           {"site", "high --at 1 2 3 --along 5", "--along is a way on a vessel"},
           {"site", "high --at 1 2 3 --of-scan carotid", "needs a place"},
           {"vessel", "second --of-scan jugular", "has no vessel 'jugular'"},
-          {"vessel", "second --of-scan carotid --branch 1", "--branch is of a table"},
+          {"vessel", "second --of-scan carotid --branch 1", "--branch is of a file"},
           {"vessel", "second --file neck.mrk.json --of-scan carotid", "a vessel needs --file"}}) {
         CAPTURE(words);
         const test::Outcome refused = made.change(verb, words);
