@@ -260,10 +260,13 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
                                 .at_limit = {},
                                 .form = log.form,
                                 .usable = even.usable};
-        const auto all_rows = static_cast<double>(log.times.size() + log.lost_rows);
+        // Rows of another sensor between those of this one are no lost samples: the steps of time show none.
+        const std::size_t missing =
+            log.times.size() > 1 ? std::min(log.lost_rows, rows_missing_in(log.times)) : log.lost_rows;
+        const auto all_rows = static_cast<double>(log.times.size() + missing);
         const double read_seconds = static_cast<double>(even.frames) / even.rate;
         source_->log->lost_fraction =
-            std::max(static_cast<double>(log.lost_rows) / all_rows, even.lost / (read_seconds + even.lost));
+            std::max(static_cast<double>(missing) / all_rows, even.lost / (read_seconds + even.lost));
         for (std::size_t c = 0; c < log.columns.size(); ++c) {
             signal::Level& level = source_->log->levels.emplace_back();
             LimitCount at_limit;

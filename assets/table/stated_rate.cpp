@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 7> interval_names{"sample interval", "sam
                                                          "abtastintervall"};
 
 std::optional<double> hertz_of(std::string_view text) {
-    constexpr std::array<std::pair<std::string_view, double>, 24> words{{{"hz", 1.0},
+    constexpr std::array<std::pair<std::string_view, double>, 25> words{{{"hz", 1.0},
                                                                          {"hertz", 1.0},
                                                                          {"khz", 1e3},
                                                                          {"kilohertz", 1e3},
@@ -46,6 +46,7 @@ std::optional<double> hertz_of(std::string_view text) {
                                                                          {"samples/sec", 1.0},
                                                                          {"samples/second", 1.0},
                                                                          {"samples per second", 1.0},
+                                                                         {"samples per sec", 1.0},
                                                                          {"per second", 1.0},
                                                                          {"ks/s", 1e3},
                                                                          {"ksa/s", 1e3},
@@ -104,6 +105,11 @@ public:
     }
 
 private:
+    /// A word without the signs of a unit.
+    static bool is_remark(std::string_view text) {
+        return text.size() > 3 && text.find_first_of("/%") == std::string_view::npos &&
+               lower(text).find("hz") == std::string::npos && !hertz_of(text) && !seconds_of(text);
+    }
     const char* quantity() const { return is_interval_ ? "interval" : "rate"; }
     void doubt(std::string why) {
         if (out_.doubt.empty()) out_.doubt = std::move(why);
@@ -216,8 +222,12 @@ private:
         if (text.empty()) return;
         for (const auto& [open, close] : unit_brackets)
             if (text.front() == open && text.back() == close) text = trimmed(text.substr(1, text.size() - 2));
+        // "1600 S/s/ch" is the rate of each channel.
+        for (const std::string_view each : {"/channel", "/chan", "/ch", "/axis"})
+            if (text.size() > each.size() && lower(text).ends_with(each)) text.remove_suffix(each.size());
         const std::optional<double> factor = factor_of(text);
-        if (!factor && is_apart) return;
+        // "1600 (nominal)": a word that is no unit of anything.
+        if (!factor && (is_apart || is_remark(text))) return;
         if (!factor) return doubt(fmt::format("'{}' is not a known unit of a {}", text, quantity()));
         if (factor_ && *factor_ != *factor) return doubt("it states two units");
         factor_ = factor;
@@ -244,7 +254,18 @@ private:
 std::optional<std::string_view> behind(std::string_view line, std::span<const std::string_view> names) {
     const std::string small = lower(line);
     for (const std::string_view name : names)
-        if (const std::size_t at = small.find(name); at != std::string::npos) return line.substr(at + name.size());
+        if (const std::size_t at = small.find(name); at != std::string::npos) {
+            // "sample period jitter", "sampling rate divider" state something else.
+            const std::string_view rest = line.substr(at + name.size());
+            const std::size_t begin = rest.find_first_not_of(" _");
+            const std::string word = begin == std::string_view::npos
+                                         ? std::string()
+                                         : lower(rest.substr(begin, rest.find_first_of(" _:=\t,;", begin) - begin));
+            constexpr std::array<std::string_view, 9> others{"jitter",    "divider", "error",  "tolerance", "accuracy",
+                                                             "deviation", "drift",   "factor", "ratio"};
+            if (std::ranges::find(others, word) == others.end()) return rest;
+            return std::nullopt;
+        }
     return std::nullopt;
 }
 

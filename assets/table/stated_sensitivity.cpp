@@ -74,6 +74,16 @@ bool is_bare_number(std::string_view text) {
     return has_digit(text) && text.find_first_not_of("0123456789.,eE+-") == std::string_view::npos;
 }
 
+/// "100 mV/g": a number, then volts per something.
+bool is_ratio(std::string_view text) {
+    const std::size_t unit = text.find_first_not_of("0123456789.,eE+- ");
+    if (unit == std::string_view::npos || !has_digit(text.substr(0, unit))) return false;
+    const std::size_t slash = text.find('/', unit);
+    if (slash == std::string_view::npos) return false;
+    const std::optional<ColumnUnit> volts = parse_column_unit(trimmed(text.substr(unit, slash - unit)));
+    return volts && volts->is_voltage();
+}
+
 /// "[mV/g]" or "(mV/(m/s²))" at the start of a text, and what follows.
 std::optional<std::pair<std::string_view, std::string_view>> leading_bracket(std::string_view text) {
     if (text.empty() || (text.front() != '(' && text.front() != '[')) return std::nullopt;
@@ -279,8 +289,11 @@ std::vector<StatedSensitivity> sensitivities_in(std::string_view line, int numbe
             found.back().text += ' ' + std::string(entry);
             is_any = true;
             continue;
-        } else if (!entry.empty() && entry.find('/') == std::string_view::npos && !is_bare_number(entry)) {
-            // "5 %" and "range 50 g" state something else.
+        } else if (!entry.empty() && !is_bare_number(entry) && !is_ratio(entry)) {
+            // "5 %", "range 50 g" and "S/N 12345" state something else.
+            continue;
+        } else if (!found.empty() && unit.empty() && is_bare_number(entry) && is_ratio(found.back().text)) {
+            // "100 mV/g; 12345": a serial number or a date, unless the list goes on with units.
             continue;
         } else {
             one.text = entry;

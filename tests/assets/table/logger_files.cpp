@@ -425,8 +425,13 @@ TEST_CASE("each column has the sensitivity that the header states for it") {
     CHECK(sensitivities_of(
               stated("Sensitivity,100 mV/g,10 mV/g", two, {.time_column = {}, .columns = {"a2"}, .time_unit = {}})) ==
           std::vector<std::string>{"10 mV/g"});
-    CHECK(sensitivities_of(stated("# sensitivity (nominal): 100 mV/g, 5 %", two)) ==
-          std::vector<std::string>{"100 mV/g", "100 mV/g"});
+    for (const char* const header :
+         {"# sensitivity (nominal): 100 mV/g, 5 %", "# Sensor: PCB 352C33, sensitivity 100 mV/g, S/N 12345",
+          "# Sensitivity: 100 mV/g, calibrated 2026-03-12", "# Sensitivity: 100 mV/g; serial 12345",
+          "# Sensitivity: 100 mV/g; 12345", "# Sensitivity: 100 mV/g, 2026-03-12"}) {
+        CAPTURE(header);
+        CHECK(sensitivities_of(stated(header, two)) == std::vector<std::string>{"100 mV/g", "100 mV/g"});
+    }
     for (const char* const header :
          {"# sensitivity: 100 mV/g\n# sensitivity: 10 mV/g",
           "# left sensitivity: 100 mV/g\n# right sensitivity: 10 mV/g", "# sensitivity: 100 mV/g, 10 mV/g, 20 mV/g"}) {
@@ -446,13 +451,28 @@ TEST_CASE("a stated rate is read with its unit wherever that stands, or refused 
         const table::SampleLog log = read_logger(header + "\nax (g)" + separator + "ay (g)" + rows);
         return 1.0 / log.times[1];
     };
-    for (const char* const header :
-         {"Sampling rate (kHz): 25.6", "# Sample interval: 39.0625 \xc2\xb5s", "# Sample interval: 39.0625 \xb5s",
-          "# Sample interval (ms): 0.0390625", "# Sample interval: 39062.5 ns", "Sample rate,25600,25600",
-          "Sample rate,25600,Hz,Channels,2", "Sample rate [kHz],25.6,25.6", "# sampling rate of channel 2: 25.6 kHz",
-          "# sample_rate_hz = 25600", "# sample rate: 25600 samples per second", "# sample rate 25.6 kS/s, 16 bit",
-          "# sampling frequency: 25600 (Hz)", "# sample rate: 25600 Hz\n# sample interval: 39.06 us",
-          "# sample rate: 25,600 Hz\n# sample interval: 39.0625 us"}) {
+    for (const char* const header : {"Sampling rate (kHz): 25.6",
+                                     "# Sample interval: 39.0625 \xc2\xb5s",
+                                     "# Sample interval: 39.0625 \xb5s",
+                                     "# Sample interval (ms): 0.0390625",
+                                     "# Sample interval: 39062.5 ns",
+                                     "Sample rate,25600,25600",
+                                     "Sample rate,25600,Hz,Channels,2",
+                                     "Sample rate [kHz],25.6,25.6",
+                                     "# sampling rate of channel 2: 25.6 kHz",
+                                     "# sample_rate_hz = 25600",
+                                     "# sample rate: 25600 samples per second",
+                                     "# sample rate 25.6 kS/s, 16 bit",
+                                     "# sampling frequency: 25600 (Hz)",
+                                     "# sample rate: 25600 Hz\n# sample interval: 39.06 us",
+                                     "# sample rate: 25,600 Hz\n# sample interval: 39.0625 us",
+                                     "# Sample rate: 25600 S/s/ch",
+                                     "# Sample rate: 25600 (nominal)",
+                                     "# Sample rate: 25600 samples per sec",
+                                     "# Sample rate: 25600 Hz/channel",
+                                     "# Sample rate: 25600 nominal",
+                                     "# Sample rate: 25600 Hz\n# Sample period jitter: 5 us",
+                                     "# Sample rate: 25600 Hz\n# Sampling rate divider: 2"}) {
         CAPTURE(header);
         CHECK(rate(header) == Approx(25600.0).margin(0.01));
     }
