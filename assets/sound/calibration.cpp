@@ -60,6 +60,8 @@ bool is_same(const Calibration& a, const Calibration& b) {
 std::optional<Sensitivity> stated_sensitivity(std::string_view comment) {
     std::optional<Sensitivity> found;
     for (const std::string& text : values_of(comment, "sensitivity")) {
+        // "transverse sensitivity: 5 %" is no volts per unit.
+        if (found && text.find('/') == std::string::npos) continue;
         Sensitivity one = parse_sensitivity(text);
         if (found && std::abs(one.volts / one.unit.si - found->volts / found->unit.si) >
                          1e-9 * std::abs(one.volts / one.unit.si))

@@ -73,6 +73,15 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
         bytes.resize(static_cast<std::size_t>(file.gcount()));
         return bytes;
     };
+    // A recorder that reserves room leaves one value in all of what it did not need.
+    const auto is_padding = [&](std::uint64_t at, std::uint64_t rest) {
+        constexpr std::uint64_t piece = 1 << 16;
+        const std::string first = read(at, 1);
+        for (std::uint64_t done = 0; done < rest; done += piece)
+            if (read(at + done, std::min(piece, rest - done)).find_first_not_of(first) != std::string::npos)
+                return false;
+        return true;
+    };
     std::string format, kept;
     std::optional<std::uint64_t> start;
     std::uint64_t size = 0, wanted = 0, long_size = 0;
@@ -102,7 +111,7 @@ std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path
             if (!is_unfinished && wanted > 0 && wanted < left) {
                 const std::uint64_t end = at + 8 + wanted, rest = present - end;
                 const std::string next = read(end + wanted % 2, 8);
-                is_unfinished = !is_behind_samples(next, rest - std::min(rest, wanted % 2)) &&
+                is_unfinished = !is_padding(end, rest) && !is_behind_samples(next, rest - std::min(rest, wanted % 2)) &&
                                 !(wanted % 2 != 0 && is_behind_samples(read(end, 8), rest));
                 is_short = is_unfinished;
             }

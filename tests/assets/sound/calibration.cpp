@@ -111,6 +111,11 @@ TEST_CASE("a rate in a comment is no full scale, and calibrations that differ ar
     CHECK(scale("fs = 48000; calibration: 98.1 m/s^2") == 98.1);
     CHECK(scale("full scale = 98.1 m/s^2; calibration: 98.1 m/s^2") == 98.1);
     CHECK_FALSE(sound::stated_calibration("fs = 48 kHz"));
+    const auto sensor =
+        sound::stated_calibration("full scale = 10 V; sensitivity: 100 mV/g; transverse sensitivity: 5 %");
+    REQUIRE(sensor);
+    CHECK(sensor->known);
+    CHECK(sensor->factor == Approx(100.0));
     for (const char* const comment : {"full scale = 49 m/s^2; calibration: 98.1 m/s^2",
                                       "full scale = 10 V; x sensitivity: 100 mV/g; y sensitivity: 10 mV/g"}) {
         CAPTURE(comment);
@@ -154,6 +159,17 @@ TEST_CASE("the lost rows of a log count against its stretch only where they are 
     const sound::Stretch first{.from = 0.0, .to = 2.0}, last{.from = 3.0, .to = 3.9};
     CHECK(sound::RecordReader(file.path, {}, std::nullopt, std::nullopt, first).log()->lost_fraction == 0.0);
     CHECK(sound::RecordReader(file.path, {}, std::nullopt, std::nullopt, last).log()->lost_fraction < 0.51);
+}
+
+TEST_CASE("rows of another sensor between those of one are no lost samples") {
+    const Temporary file("calibration.csv");
+    std::ofstream out(file.path);
+    out << "t [s],ax [g],gx [deg/s]\n";
+    for (int i = 0; i < 4000; ++i) out << fmt::format("{:.4f},0.5,\n{:.4f},,1.5\n", 0.001 * i, 0.001 * i + 0.0005);
+    out.close();
+    CHECK(sound::RecordReader(file.path, {.time_column = {}, .columns = {"ax"}, .time_unit = {}}, std::nullopt)
+              .log()
+              ->lost_fraction == 0.0);
 }
 
 TEST_CASE("columns of different quantities stay uncalibrated, and that is said") {

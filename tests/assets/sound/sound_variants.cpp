@@ -169,6 +169,17 @@ TEST_CASE("sounds whose header has no rate, no channels or two chunks of samples
                       ContainsSubstring("its header is damaged"));
 }
 
+TEST_CASE("room behind the samples of a WAV that was reserved and not needed is no sound") {
+    const SoundFiles files;
+    const std::string wave = wave_of(format_piece(1, 1, 2, false), samples_of(2, 16, false));
+    file::write_whole_file(files.folder / "whole.wav", wave);
+    const auto frames = sound::SoundReader(files.folder / "whole.wav").frames();
+    for (const char padding : {'\0', '\xff'}) {
+        file::write_whole_file(files.folder / "padded.wav", wave + std::string(100000, padding));
+        CHECK(sound::SoundReader(files.folder / "padded.wav").frames() == frames);
+    }
+}
+
 TEST_CASE("an AIFF or AU that is cut is read to the cut with a note, and a chunk without padding is passed") {
     const SoundFiles files;
     const auto note_of = [&](const std::string& name, const std::string& bytes) {
