@@ -37,17 +37,23 @@ bool is_remark(std::string_view line) { return line.front() == '#' || line.front
 
 /// Of the whole file, because with semicolons or tabs a comma is decimal.
 char separator_of(std::string_view text) {
-    bool has_comma = false, has_tab = false;
+    bool has_comma = false, has_tab = false, is_decimal = false;
     while (!text.empty()) {
         const std::size_t end = text.find('\n');
         const std::string_view line = trimmed(text.substr(0, end));
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
         if (line.empty() || is_remark(line)) continue;
         if (line.find(';') != std::string_view::npos) return ';';
-        has_comma = has_comma || line.find(',') != std::string_view::npos;
+        // Names may be separated otherwise than numbers.
+        if (std::string_view("+-.0123456789").find(line.front()) == std::string_view::npos) continue;
+        for (std::size_t at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1)) {
+            has_comma = true;
+            const auto is_digit = [&](std::size_t i) { return i < line.size() && line[i] >= '0' && line[i] <= '9'; };
+            is_decimal = is_decimal || (at > 0 && is_digit(at - 1) && is_digit(at + 1));
+        }
         has_tab = has_tab || line.find('\t') != std::string_view::npos;
     }
-    return has_comma && has_tab ? '\t' : has_comma ? ',' : blanks;
+    return has_comma && has_tab && is_decimal ? '\t' : has_comma ? ',' : blanks;
 }
 
 /// Splits a line, keeping empty cells but those at the end.
@@ -88,7 +94,10 @@ public:
             if (++line_ > max_lines) fail(fmt::format("longer than {} lines", max_lines));
             if (line.empty()) continue;
             if (is_remark(line)) remark(line.substr(1));
-            else row(cells_of(line, separator));
+            else {
+                const bool has_names_apart = separator == blanks && line.find(',') != std::string_view::npos;
+                row(cells_of(line, has_names_apart ? ',' : separator), separator);
+            }
         }
         if (const auto doubt = sign_.doubt())
             throw Error({path_.string(), doubt->line, doubt->line > 0 ? 1 : 0}, doubt->why);
@@ -144,7 +153,7 @@ private:
         columns_ = cells.size();
     }
 
-    void row(const std::vector<std::string_view>& cells) {
+    void row(const std::vector<std::string_view>& cells, char separator) {
         vibration::FrequencyResponse& response = file_.identified.response;
         if (!number_of_cell(cells.front())) {
             if (named_ || !response.hz.empty()) fail(fmt::format("'{}' is not a number", cells.front()));
@@ -152,7 +161,7 @@ private:
         }
         if (!named_ && response.hz.empty()) has_phase_ = cells.size() > 2;
         // Half of a number with a decimal comma would be taken for a column.
-        if (cells.size() > columns_)
+        if (cells.size() > columns_ && separator == ',')
             fail(
                 named_
                     ? fmt::format("the row has {} cells and there are {} names; are commas decimal here? Then separate "

@@ -62,6 +62,17 @@ TEST_CASE("tables of other programs are read: blanks, remarks, no names, no phas
     CHECK(std::abs(table.identified.response.gain[0] - std::complex<double>(0.0, 2.0)) < 1e-4);
     CHECK(std::abs(table.identified.response.gain[1] - std::complex<double>(0.0, -1.0)) < 1e-4);
 
+    // Names are separated otherwise than numbers; a coherence; commas and tabs.
+    const auto& right = table.identified.response;
+    for (const char* const text : {"Freq(Hz), SPL(dB), Phase(degrees)\n10.0 6.0206 90\n20 0 -90.0\n40 +3 0\n",
+                                   "10.0 6.0206 90 0.99\n20 0 -90.0 0.98\n40 +3 0 0.97\n",
+                                   "10.0,\t6.0206,\t90\n20,\t0,\t-90.0\n40,\t+3,\t0\n"}) {
+        INFO(text);
+        const auto read = read_response(folder, text).identified.response;
+        CHECK(read.hz == right.hz);
+        CHECK(read.gain == right.gain);
+    }
+
     // A level that rises 6 dB per octave has a phase of 90°.
     std::string rising = "dB;Hz\r\n";
     for (int i = 0; i < 20; ++i) rising += std::to_string(6.0206 * i) + ";" + std::to_string(std::exp2(i)) + "\r\n";
