@@ -134,9 +134,12 @@ Wrench ForceLimiter::tick(const Wrench& raw, std::int64_t counter, bool valid, d
     watch_input(counter, valid);
     if (fault_ != Fault::none || held_off_) return output_ = fade(elapsed_s);
 
+    // A fade is finished, also when its reason has gone: the slew may be much slower. Small forces count meanwhile.
+    if (faded_s_ < limits_.fade_s * (1.0 - 1e-9)) {
+        if (!engaged()) (void)engagement(raw, elapsed_s);
+        return output_ = fade(elapsed_s);
+    }
     const double gain = engagement(raw, elapsed_s);
-    // A fade is finished, also when its reason has gone: the slew may be much slower.
-    if (gain == 0.0 && faded_s_ < limits_.fade_s) return output_ = fade(elapsed_s);
     const Wrench wanted = ForceBounds{limits_.max_force, limits_.max_torque}.clamp(raw) * gain;
     output_.force += shorten(wanted.force - output_.force, limits_.force_slew * period_s_);
     output_.torque += shorten(wanted.torque - output_.torque, limits_.torque_slew * period_s_);

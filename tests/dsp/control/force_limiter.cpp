@@ -158,6 +158,16 @@ TEST_CASE("a fade takes 10 ms, however soon the fault is over and however slow t
         rig.run({{0.0, 0.0, 3.0}, {}}, 1000);
         CHECK(rig.out.force.z == Approx(3.0));
     }
+    // Also when the force is small meanwhile, so that it could engage.
+    for (const int faulty_ticks : {1, 2, 5}) {
+        Rig rig(limits);
+        rig.engage();
+        rig.run({{0.0, 0.0, 3.0}, {}}, 1000);
+        rig.run({{0.0, 0.0, 3.0}, {}}, faulty_ticks, true, false);
+        rig.limiter.recover();
+        rig.run({}, 10 - faulty_ticks);
+        CHECK(rig.out.force.z == Approx(0.0).margin(1e-9));
+    }
     // Held off for a moment: the same.
     Rig rig(limits);
     rig.engage();
