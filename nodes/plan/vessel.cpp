@@ -82,6 +82,7 @@ struct Vessel {
     void prepare(const Setup& setup) {
         name_ = setup.name;
         is_new_ = true;
+        felt_ = -1;
         std::vector<std::vector<Vec3>> surfaces(plan->bones.size());
         const plan::PlanState state = plan::state_of(plan->plan);
         bool is_any = false;
@@ -141,7 +142,7 @@ struct Vessel {
         const bool is_held = holds(place);
         // A piece that is held from the start was not grasped: what follows is one closed law.
         const double part = std::exchange(is_new_, false) ? 1.0 : tick.elapsed_seconds() / fade_time;
-        left_ = is_held ? std::min(left_ + part, 1.0) : std::max(left_ - part, 0.0);
+        fade_to(is_held ? place : -1, part);
         if (!site.connected) last_site_ = given_site();
         else if (is_valid(site.get())) last_site_ = site->position;
         // A site that was never there is sewn to nothing.
@@ -244,10 +245,18 @@ private:
         return false;
     }
 
+    /// The pull of another piece begins when that of the one before has faded.
+    void fade_to(int place, double part) noexcept {
+        if (place == felt_) left_ = place >= 0 ? std::min(left_ + part, 1.0) : 0.0;
+        else left_ = felt_ >= 0 ? std::max(left_ - part, 0.0) : 0.0;
+        if (place == felt_ || left_ > 0.0) return;
+        felt_ = place;
+        if (part >= 1.0) left_ = 1.0;
+    }
     /// The force on the hand that holds the piece `place`, -1: none. Where nothing specifies the strength, it fades in and out.
     void give(int place) noexcept {
-        if (place >= 0) last_ = felt(place);
-        else if (strength.connected || left_ == 0.0) last_ = {};
+        if (place >= 0 && (strength.connected || place == felt_)) last_ = felt(place);
+        else if (strength.connected || left_ == 0.0 || (hand.connected && !is_valid(hand.get()))) last_ = {};
         wrench = last_ * (strength.connected ? std::clamp(strength.get(), 0.0, 1.0) : left_);
     }
 
@@ -301,6 +310,7 @@ private:
     std::int64_t idle_ticks_ = 1, phase_ = 0;
     static constexpr double fade_time = 0.1;  // s
     bool is_new_ = true;
+    int felt_ = -1;  // the piece whose pull the hand has
     double left_ = 0.0;  // of the fade where nothing specifies the strength
     Wrench last_;  // of the held piece
     double waited_ = 0.0, greatest_ = 0.0, greatest_felt_ = 0.0, residual_ = 0.0;

@@ -122,6 +122,24 @@ TEST_CASE("the pull comes and goes without a step where nothing states the stren
     CHECK(glm::length(felt[1601].force) == 0.0);
 }
 
+TEST_CASE("the pull goes from one piece to another without a step, and stays nowhere without a hand") {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    VesselRig rig;
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright});
+    rig.node.feed<double>("held", [](std::int64_t k) { return k < 500 ? 1.0 : k < 1000 ? 2.0 : -1.0; });
+    const Pose hand = rig.shown.moved({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright}).objects[2].pose;
+    rig.node.feed<Pose>("hand", [=](std::int64_t k) { return k < 1010 ? hand : Pose{{nan, 0.0, 0.0}, {1, 0, 0, 0}}; });
+    rig.node.disconnect("pose");
+    rig.node.prepare();
+    rig.node.run(1100);
+    const auto felt = rig.node.values<Wrench>("wrench");
+    double step = 0.0;
+    for (std::size_t k = 400; k < 1010; ++k) step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
+    REQUIRE(glm::length(felt[999].force) > 0.5);
+    CHECK(step < 0.05 * glm::length(felt[999].force));
+    CHECK(glm::length(felt[1010].force) == 0.0);
+}
+
 TEST_CASE("a vein gives its reach and no newtons") {
     VesselRig rig;
     rig.node.set("kind", "vein");
