@@ -348,7 +348,9 @@ LineCourse course_of(std::span<const double> samples, double rate, double freque
         if (i > 0) {
             const double more = std::arg(sum * std::conj(before)) - turn * static_cast<double>(hop);
             const double beyond = std::remainder(more, 2.0 * std::numbers::pi);
-            out.rates.push_back(frequency + beyond / (2.0 * std::numbers::pi * out.interval));
+            const double now = frequency + beyond / (2.0 * std::numbers::pi * out.interval);
+            // Where the line pauses its phase is that of noise; a rate stays positive, and within the band.
+            out.rates.push_back(std::clamp(now, frequency - 0.8 * half_band, frequency + half_band));
         }
         before = sum;
         if (middle >= half && middle + half <= samples.size()) roots += std::abs(sum), squares += std::norm(sum);
@@ -453,7 +455,6 @@ std::span<const double> SteadyFundamentalStream::longest_piece() const {
 /// How evenly a line is spread over the record: squared mean of its amplitude in parts of `length` samples over the
 /// mean square, relative to that of a steady line in the same noise, of which a part has `snr` times the power.
 double SteadyFundamentalStream::persistence(double frequency, double snr, std::size_t length) const {
-    length = std::min(length, longest_piece().size());
     if (length == 0) return 0.0;
     std::vector<std::complex<double>> kernel(length);
     for (std::size_t n = 0; n < length; ++n) {
@@ -550,7 +551,8 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
     const std::size_t eighth = kept_.size() / eighths;
     const auto few_periods = static_cast<std::size_t>(std::ceil(periods_per_piece * rate_ / comb.frequency));
-    const std::size_t length = out.strong_lines > few_lines ? eighth : std::min(eighth, few_periods);
+    const std::size_t length =
+        std::min(out.strong_lines > few_lines ? eighth : std::min(eighth, few_periods), longest_piece().size());
     // A bin of the spectrum and a part of the record differ in the noise that they contain.
     out.persistence =
         persistence(strongest->frequency,

@@ -2,6 +2,7 @@
 #include "dsp/signal/spectrum/fundamental.hpp"
 
 #include "dsp/core/random.hpp"
+#include "dsp/signal/spectrum/steady_fundamental.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -427,6 +428,26 @@ TEST_CASE("a record in pieces has the fundamental of the whole") {
     const signal::FundamentalEstimate a = stream.estimate(), b = signal::find_fundamental(saw.samples, saw.rate);
     CHECK(a.frequency == b.frequency);
     CHECK(a.confidence == b.confidence);
+}
+
+TEST_CASE("a line that pauses is followed with rates that are possible") {
+    constexpr double rate = 400.0;
+    for (const double frequency : {9.0, 11.0, 14.0})
+        for (const double noise : {0.0, 0.02})
+            for (const double pause : {0.0, 7.0}) {
+                std::vector<double> x(static_cast<std::size_t>(16.0 * rate));
+                const Random random{5};
+                for (std::size_t i = 0; i < x.size(); ++i) {
+                    const double t = static_cast<double>(i) / rate;
+                    const bool is_off = t >= pause && t < pause + 1.6;
+                    x[i] = (is_off ? 0.0 : std::sin(2.0 * std::numbers::pi * frequency * t)) + noise * random.normal(i);
+                }
+                signal::SteadyFundamentalStream stream(rate, x.size(), 5.0, 150.0);
+                stream.push(x);
+                const signal::SteadyFundamental found = stream.estimate_straightened();
+                CAPTURE(frequency, noise, pause);
+                CHECK((found.frequency == 0.0 || found.frequency == Approx(frequency).epsilon(0.05)));
+            }
 }
 
 TEST_CASE("hum beside a machine of one order does not make its rate a fraction or a multiple of itself") {
