@@ -38,18 +38,28 @@ public:
     explicit PlateCurve(const reconstruction::Plate& plate) {
         std::vector<double> knots;
         std::array<std::vector<double>, 6> values;
+        const Vec3* before = nullptr;
         for (std::size_t n = 0; n < plate.points.size(); ++n) {
-            const double gone = n > 0 ? glm::length(plate.points[n] - plate.points[n - 1]) : 0.0;
-            if (n > 0 && gone < 0.5 * mm) continue;
-            knots.push_back(n > 0 ? knots.back() + gone : 0.0);
+            const double gone = before ? glm::length(plate.points[n] - *before) : 0.0;
+            if (before && gone < 0.5 * mm) continue;
+            before = &plate.points[n];
+            knots.push_back(knots.empty() ? 0.0 : knots.back() + gone);
             for (int axis = 0; axis < 3; ++axis) {
                 values[static_cast<std::size_t>(axis)].push_back(plate.points[n][axis]);
                 values[static_cast<std::size_t>(axis) + 3].push_back(plate.outward[n][axis]);
             }
         }
         if (knots.size() < 2) throw Error(fmt::format("plate '{}' has no course: it needs two points", plate.name));
+        for (auto& list : values) list = smoothed(knots, list);
+        // Lengths are those of the smoothed course, which cuts off steps of the bone.
+        for (std::size_t n = 1; n < knots.size(); ++n) {
+            Vec3 step(0.0);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                step[static_cast<int>(axis)] = values[axis][n] - values[axis][n - 1];
+            knots[n] = knots[n - 1] + std::max(glm::length(step), 0.01 * mm);
+        }
         length_ = knots.back();
-        for (auto& list : values) splines_.emplace_back(knots, smoothed(knots, list));
+        for (auto& list : values) splines_.emplace_back(knots, list);
         for (double s = 0.0; s < length_ + station_step; s += station_step)
             stations_.push_back(frame(std::min(s, length_)).at);
     }
