@@ -99,6 +99,7 @@ void FlapRun::tend_change() {
     if (is_ready(changing_)) {
         try {
             changed_ = changing_.get();
+            for (const std::string& warning : *warnings_) bench_.tell(warning, false);
         } catch (const std::exception& error) {
             bench_.tell(error.what(), true);
             was_refused_ = true;
@@ -112,6 +113,7 @@ void FlapRun::tend_change() {
 bool FlapRun::begin(WholeChange change) {
     if (!run_.plan() || is_changing() || !run_.may_begin_again()) return false;
     change_ = std::move(change);
+    warnings_ = std::make_shared<std::vector<std::string>>();
     waits_ = true;
     was_live_ = run_.is_live();
     tend_change();
@@ -162,8 +164,9 @@ bool FlapRun::lay_plate(const PlateChoice& choice) {
 }
 
 bool FlapRun::make_guide(reconstruction::KeptGuide guide, const std::string& of) {
-    return begin([guide, of, folder = run_.file().parent_path()](reconstruction::Reconstruction& all,
-                                                                 const plan::CasePlan& plan) mutable {
+    const auto warnings = std::make_shared<std::vector<std::string>>();
+    const bool begins = begin([guide, of, warnings, folder = run_.file().parent_path()](
+                                  reconstruction::Reconstruction& all, const plan::CasePlan& plan) {
         for (const reconstruction::KeptGuide& known : all.guides)
             if (known.name == guide.name && guide.name != of)
                 throw Error(
@@ -171,9 +174,11 @@ bool FlapRun::make_guide(reconstruction::KeptGuide guide, const std::string& of)
                                 "to make it again",
                                 guide.name));
         reconstruction::KeptGuide made = guide;
-        analysis::make_kept_guide(made, plan, folder);
+        *warnings = analysis::make_kept_guide(made, plan, folder);
         put_named(all.guides, of, std::move(made));
     });
+    if (begins) warnings_ = warnings;
+    return begins;
 }
 
 bool FlapRun::lay_paddle(const PaddleChoice& choice) {
@@ -182,7 +187,7 @@ bool FlapRun::lay_paddle(const PaddleChoice& choice) {
             reconstruction::SkinPaddle paddle = all.flap.paddle.value_or(reconstruction::SkinPaddle{});
             if (choice.at) {
                 paddle.at = *choice.at;
-            } else if (!all.flap.paddle) {
+            } else {
                 const analysis::FlapStudy study(plan, plan::state_of(plan), folder);
                 paddle.at = analysis::default_paddle_place(study.inputs(), study.fibula(), study.flap());
             }

@@ -57,7 +57,7 @@ public:
     /// not be printed changes nothing.
     bool make_guide(reconstruction::KeptGuide guide, const std::string& of = "");
     struct PaddleChoice {
-        std::optional<Vec3> at;  ///< m, frame of the donor; none: where it is, or at the perforators
+        std::optional<Vec3> at;  ///< m, frame of the donor; none: at the perforators
         double length = 60e-3, width = 40e-3;  ///< m
     };
     bool lay_paddle(const PaddleChoice& choice);
@@ -82,6 +82,8 @@ private:
     std::future<std::filesystem::path> changing_;  ///< writes a file: its end is waited for
     std::filesystem::path changed_;
     WholeChange change_;  ///< being made; null: the run is only to begin with its plan as it is
+    /// What the change has to say once it is made; written by its thread.
+    std::shared_ptr<const std::vector<std::string>> warnings_ = std::make_shared<std::vector<std::string>>();
     std::int64_t made_of_ = 0;
     std::filesystem::path began_in_;  ///< plan of the run whose nodes have read ...
     std::string began_with_;  ///< ... this reconstruction
