@@ -41,10 +41,21 @@ namespace {
 
 std::vector<std::string> given;  // the words of the command line
 
+/// The first word that is not an option of the program; "": none.
+std::string verb_given() {
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        const std::string& word = given[i];
+        if (word == "--nodes" || word == "--memory") ++i;
+        else if (!word.starts_with("--nodes=") && !word.starts_with("--memory=")) return word;
+    }
+    return "";
+}
+
 int run_full() {
-    const std::string verb =
-        given.empty() || given.front().starts_with('-') ? "the help of all verbs" : fmt::format("'{}'", given.front());
-    run_beside("tactus-full", verb + " and the window", given);
+    const std::string verb = verb_given();
+    const bool is_help = verb.empty() || verb.starts_with('-');
+    run_beside("tactus-full", (is_help ? "the help of all verbs" : fmt::format("'{}'", verb)) + " and the window",
+               given);
 }
 
 }  // namespace
@@ -61,7 +72,7 @@ int main(int argc, char** argv) {
 #define TACTUS_LIST(name) name##_verb(),
     const Verbs verbs{TACTUS_RUNNER_VERBS(TACTUS_LIST)};
 #undef TACTUS_LIST
-    const auto is_own = [&](const Verb& verb) { return !given.empty() && given.front() == verb.name; };
+    const auto is_own = [name = verb_given()](const Verb& verb) { return name == verb.name; };
     if (std::any_of(verbs.begin(), verbs.end(), is_own))
         return command_line({"tactus", "Tactus: patches of nodes for haptics, from 60 Hz to audio rate", verbs}, argc,
                             argv);

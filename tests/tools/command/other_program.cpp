@@ -35,6 +35,7 @@ TEST_CASE("a command without the other programs runs patches, and names the one 
         const std::string text = slurp(said);
         CHECK(text.find("--target tactus-full") != std::string::npos);
     }
+    CHECK(code_of("--memory \"1 GB\" render tone.toml --seconds 0.01 --out there") == 0);
     CHECK(code_of("run tone.toml --no-such-option") == 2);
     CHECK(slurp(said).find("tactus-full") == std::string::npos);
 }
