@@ -16,7 +16,7 @@ void note_lost(const std::optional<sound::LogFacts>& log, std::vector<std::strin
     if (is_incomplete(log))
         notes.push_back(
             fmt::format("{:.3g} % of the record is missing, more than {:g} %: the values are those of the rest, which "
-                        "do not prove that an action or limit value is kept",
+                        "cannot show that exposure is below an action or limit value",
                         100.0 * log->lost_fraction, 100.0 * max_lost_fraction));
 }
 
