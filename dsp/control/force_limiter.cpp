@@ -4,6 +4,7 @@
 #include "dsp/control/force_bounds.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tactus::control {
 const char* describe(Fault fault) noexcept {
@@ -58,6 +59,7 @@ void ForceLimiter::fail(Fault reason) noexcept {
 void ForceLimiter::cut(Fault reason) noexcept {
     fail(reason);
     output_ = fade_from_ = {};
+    faded_s_ = std::numeric_limits<double>::infinity();  // nothing is left
 }
 
 void ForceLimiter::hold_off(bool wanted) noexcept {

@@ -144,7 +144,7 @@ private:
         limits.max_torque = lower_limit(HUGE_VAL, info.max_torque);
         limits.force_slew = limits.torque_slew = HUGE_VAL;
         limits.engage_ticks = 0;
-        limits.engage_ramp_s = 0.0;
+        limits.engage_ramp_s = limits.fade_s = 0.0;
         return limits;
     }
 
