@@ -272,7 +272,11 @@ std::vector<StatedSensitivity> sensitivities_in(std::string_view line, int numbe
             unit = bracket->first, rest = bracket->second;
     std::vector<StatedSensitivity> found;
     bool is_any = false;
-    for (std::string_view entry : list_entries(rest, separator)) {
+    const std::vector<std::string_view> entries = list_entries(rest, separator);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        std::string_view entry = entries[i];
+        const bool has_unit_behind =
+            i + 1 < entries.size() && !has_digit(entries[i + 1]) && entries[i + 1].find('/') != std::string_view::npos;
         StatedSensitivity one{{}, channel, number};
         // "x = 100 mV/g", "x: 100 mV/g", "x 100 mV/g"
         if (!entry.empty() && !is_digit(entry.front()))
@@ -292,7 +296,8 @@ std::vector<StatedSensitivity> sensitivities_in(std::string_view line, int numbe
         } else if (!entry.empty() && !is_bare_number(entry) && !is_ratio(entry)) {
             // "5 %", "range 50 g" and "S/N 12345" state something else.
             continue;
-        } else if (!found.empty() && unit.empty() && is_bare_number(entry) && is_ratio(found.back().text)) {
+        } else if (!found.empty() && unit.empty() && !has_unit_behind && is_bare_number(entry) &&
+                   is_ratio(found.back().text)) {
             // "100 mV/g; 12345": a serial number or a date, unless the list goes on with units.
             continue;
         } else {

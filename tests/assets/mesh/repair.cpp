@@ -177,8 +177,9 @@ TEST_CASE("a mesh a metre from the origin becomes the same bone as one at it") {
         most = std::max(most, difference);
     }
     CHECK(worst < 2e-9);
-    // Far from the surface rounding decides which of two triangles, almost equally near, is found.
-    CHECK(far_off < 1e-6);
+    // Far from the surface rounding decides which of two triangles, almost equally near, is found: a part of the error that
+    // distances may have there.
+    CHECK(far_off < 0.05 * 0.47e-3);
 }
 
 TEST_CASE("a big-endian and a text PLY with polygons give the same mesh") {
