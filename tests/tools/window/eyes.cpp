@@ -120,7 +120,9 @@ void interrupt(const fs::path& folder, int signal) {
     for (const auto& process : fs::directory_iterator("/proc", none)) {
         std::ifstream name(process.path() / "comm");
         std::string comm;
-        if (!(name >> comm) || comm != "tactus" || fs::read_symlink(process.path() / "cwd", none) != folder) continue;
+        if (!(name >> comm) || (comm != "tactus" && comm != "tactus-full") ||
+            fs::read_symlink(process.path() / "cwd", none) != folder)
+            continue;
         ::kill(std::stoi(process.path().filename()), signal);
     }
 }

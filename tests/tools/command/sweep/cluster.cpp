@@ -112,7 +112,8 @@ bool kill_a_worker(const fs::path& folder) {
         std::error_code ignored;
         const std::string program =
             fs::read_symlink("/proc/" + std::to_string(process) + "/exe", ignored).filename().string();
-        if (process > 1 && program == "tactus" && ::kill(process, SIGKILL) == 0) return true;
+        if (process > 1 && (program == "tactus" || program == "tactus-full") && ::kill(process, SIGKILL) == 0)
+            return true;
     }
     return false;
 }
