@@ -41,7 +41,7 @@ TEST_CASE("a take of one program replays in another one of the same build, witho
     const std::string in_folder = "cd " + folder.path.string() + " && ";
     REQUIRE(std::system((in_folder + full + " run touch.toml --seconds 0.05 --record take --out out >/dev/null 2>&1")
                             .c_str()) == 0);
-    const Outcome replay = folder.tactus("replay " + (folder.path / "take").string() + " --out again");
+    const Outcome replay = folder.tactus("replay " + (folder.path / "take").string());
     CHECK(replay.code == 0);
     CHECK(replay.err.find("another build") == std::string::npos);
 }
