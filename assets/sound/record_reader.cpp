@@ -59,6 +59,13 @@ std::size_t rows_missing_in(const table::PackedColumn& times) {
     return static_cast<std::size_t>(std::min(missing, 1e15));
 }
 
+/// The rows without values that are lost samples: rows of another sensor between those of this one are none, as the steps
+/// of time show.
+std::size_t lost_between(const table::SampleLog& log) {
+    return log.lost_rows > 0 && log.times.size() > 1 ? std::min(log.lost_rows, rows_missing_in(log.times))
+                                                     : log.lost_rows;
+}
+
 /// Keeps the rows of a stretch; times stay as they are.
 ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesystem::path& path) {
     const auto rows = static_cast<double>(log.times.size());
@@ -72,7 +79,7 @@ ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesy
     if (first == end) throw Error(fmt::format("{}: there is no row from {}", path.string(), read.text()));
     log.times.cut(first, end);
     for (table::PackedColumn& column : log.columns) column.cut(first, end);
-    log.lost_rows = std::min(log.lost_rows, rows_missing_in(log.times));
+    log.lost_rows = lost_between(log);
     return read;
 }
 
@@ -176,11 +183,11 @@ std::vector<std::string> LogFacts::missing() const {
 struct RecordReader::Source {
     std::filesystem::path path;
     std::optional<SoundReader> sound;
-    table::SampleLog rows;                   // of a log
+    table::SampleLog rows;  // of a log
     std::optional<signal::Regulariser> even;  // of those rows
-    std::vector<std::vector<double>> open;   // its last block
-    std::size_t at = 0;                      // in that block
-    bool after_gap = false;                  // of that block
+    std::vector<std::vector<double>> open;  // its last block
+    std::size_t at = 0;  // in that block
+    bool after_gap = false;  // of that block
     std::size_t frames = 0;
     std::size_t first = 0, done = 0;  // of a sound: first frame of the stretch, frames read of it
     ReadStretch stretch;
@@ -260,9 +267,7 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
                                 .at_limit = {},
                                 .form = log.form,
                                 .usable = even.usable};
-        // Rows of another sensor between those of this one are no lost samples: the steps of time show none.
-        const std::size_t missing =
-            log.times.size() > 1 ? std::min(log.lost_rows, rows_missing_in(log.times)) : log.lost_rows;
+        const std::size_t missing = lost_between(log);
         const auto all_rows = static_cast<double>(log.times.size() + missing);
         const double read_seconds = static_cast<double>(even.frames) / even.rate;
         source_->log->lost_fraction =
