@@ -241,63 +241,62 @@ std::vector<Touch> touches_of(const FitSurface& moving, const FitSurface& fixed,
     return touches;
 }
 
+/// The covariance of the heights of both faces about the surface of least squares with so many terms.
+template <std::size_t terms>
+class SharedHeights {
+public:
+    void add(const std::array<double, terms>& row, double mine, double its) {
+        ++count_;
+        products_ += mine * its;
+        for (std::size_t a = 0; a < terms; ++a) {
+            own_[a] += row[a] * mine;
+            other_[a] += row[a] * its;
+            for (std::size_t b = 0; b < terms; ++b) matrix_[a * terms + b] += row[a] * row[b];
+        }
+    }
+    /// m²; none for fewer points than `min_count`.
+    std::optional<double> covariance(std::size_t min_count) const {
+        if (count_ < min_count) return std::nullopt;
+        std::vector<double> matrix = matrix_, surface = own_;
+        for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
+        if (!geometry::solve_positive(matrix, surface)) return std::nullopt;
+        double products = products_;
+        for (std::size_t a = 0; a < terms; ++a) products -= surface[a] * other_[a];
+        return products / static_cast<double>(count_ - terms);
+    }
+
+private:
+    std::vector<double> matrix_ = std::vector<double>(terms * terms, 0.0), own_ = std::vector<double>(terms, 0.0),
+                        other_ = own_;
+    double products_ = 0.0;
+    std::size_t count_ = 0;
+};
+
 /// The covariance of both heights about planes through the points within `reach` (of `nearby`) of one, m². None for too few
 /// points.
 std::optional<double> covariance_around(const Touch& centre, const std::vector<Touch>& touches, double reach) {
-    constexpr std::size_t terms = 3, min_around = 10;  // 1, u, v
-    std::vector<double> matrix(terms * terms, 0.0), own(terms, 0.0), other(terms, 0.0);
-    double products = 0.0;
-    std::size_t count = 0;
+    SharedHeights<3> heights;
     for (const Touch& t : touches) {
-        const double row[terms] = {1.0, t.u - centre.u, t.v - centre.v};
-        if (!(row[1] * row[1] + row[2] * row[2] < reach * reach)) continue;
-        const double mine = t.own - centre.own, its = t.other - centre.own;
-        ++count;
-        products += mine * its;
-        for (std::size_t a = 0; a < terms; ++a) {
-            own[a] += row[a] * mine;
-            other[a] += row[a] * its;
-            for (std::size_t b = 0; b < terms; ++b) matrix[a * terms + b] += row[a] * row[b];
-        }
+        const double u = t.u - centre.u, v = t.v - centre.v;
+        if (u * u + v * v < reach * reach) heights.add({1.0, u, v}, t.own - centre.own, t.other - centre.own);
     }
-    if (count < min_around) return std::nullopt;
-    for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
-    std::vector<double> plane = own;
-    if (!geometry::solve_positive(matrix, plane)) return std::nullopt;
-    for (std::size_t a = 0; a < terms; ++a) products -= plane[a] * other[a];
-    return products / static_cast<double>(count - terms);
+    return heights.covariance(10);
 }
 
 /// The covariance of both heights about surfaces that are straight along `direction` (rad, in the opening's plane): of the
 /// points within `reach` (of `nearby`) along it, and a quarter of that across. None for too few points.
 std::optional<double> covariance_along(double direction, const Touch& centre, const std::vector<Touch>& around,
                                        double reach) {
-    constexpr std::size_t terms = 6,
-                          min_around = 12;  // a ruled surface, to the second order across: 1, a, c, ac, c², c³
+    SharedHeights<6> heights;  // a ruled surface, to the third order across
     const double cosine = std::cos(direction), sine = std::sin(direction);
-    std::vector<double> matrix(terms * terms, 0.0), own(terms, 0.0), other(terms, 0.0);
-    double products = 0.0;
-    std::size_t count = 0;
     for (const Touch& t : around) {
         const double u = (t.u - centre.u) / reach, v = (t.v - centre.v) / reach;
         const double along = u * cosine + v * sine, across = 4.0 * (v * cosine - u * sine);
         if (!(std::abs(along) < 1.0) || !(std::abs(across) < 1.0)) continue;
-        const double row[terms] = {1.0, along, across, along * across, across * across, across * across * across};
-        const double mine = t.own - centre.own, its = t.other - centre.own;
-        ++count;
-        products += mine * its;
-        for (std::size_t a = 0; a < terms; ++a) {
-            own[a] += row[a] * mine;
-            other[a] += row[a] * its;
-            for (std::size_t b = 0; b < terms; ++b) matrix[a * terms + b] += row[a] * row[b];
-        }
+        heights.add({1.0, along, across, along * across, across * across, across * across * across}, t.own - centre.own,
+                    t.other - centre.own);
     }
-    if (count < min_around) return std::nullopt;
-    for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
-    std::vector<double> ruled = own;
-    if (!geometry::solve_positive(matrix, ruled)) return std::nullopt;
-    for (std::size_t a = 0; a < terms; ++a) products -= ruled[a] * other[a];
-    return products / static_cast<double>(count - terms);
+    return heights.covariance(12);
 }
 
 /// m rms: relief that both faces share, about planes, and about ruled surfaces along the directions in which they share
