@@ -594,12 +594,16 @@ private:
                 if (is_beyond_cuts) block(std::max(width, ledge) + set_.wall, s.top + set_.offset + set_.thickness);
             }
         }
-        solid.parts.push_back({side(0, 1.0, rail_to_),
-                               side(0, -1.0, rail_from_),
+        add_rail(solid, rail_from_, rail_to_, rail_low_);
+    }
+
+    void add_rail(GuideSolid& solid, double from, double to, double low) const {
+        solid.parts.push_back({side(0, 1.0, to),
+                               side(0, -1.0, from),
                                side(1, 1.0, rail_y_),
                                side(1, -1.0, rail_y_ - set_.rail),
                                side(2, 1.0, top_),
-                               side(2, -1.0, rail_low_),
+                               side(2, -1.0, low),
                                {Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.rail_clearance}});
     }
 
@@ -609,13 +613,7 @@ private:
         for (const auto& patch : patches_) from = std::min(from, patch->low.x), to = std::max(to, patch->high.x);
         for (double x = from; x <= to; x += bone_spacing)
             if (const double top = bone.top(x, 0.0); std::isfinite(top)) low = std::min(low, top);
-        solid.parts.push_back({side(0, 1.0, to),
-                               side(0, -1.0, from),
-                               side(1, 1.0, rail_y_),
-                               side(1, -1.0, rail_y_ - set_.rail),
-                               side(2, 1.0, top_),
-                               side(2, -1.0, low),
-                               {Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.rail_clearance}});
+        add_rail(solid, from, to, low);
     }
 
     void add_cuts(GuideSolid& solid, const SeatedBone& bone) {
