@@ -338,15 +338,24 @@ TEST_CASE("a force whose changes overflow is felt as a fault in its ticks, and n
     }
 }
 
+namespace {
+
+/// A hand that goes down to the table and presses the held body on it.
+Pose pressed(std::int64_t k) {
+    return {{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
+}
+
+void press_on_table(NodeHarness& node) {
+    node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
+    node.feed("scene", coupled_scene()).feed<Pose>("device", pressed);
+}
+
+}  // namespace
+
 TEST_CASE("a body that is let go leaves no force on the hand, where nothing states the strength of its force") {
     for (const char* type : {"quasi_static_coupling", "dynamic_coupling"}) {
         NodeHarness node(type, test::servo);
-        node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
-        node.feed("scene", coupled_scene());
-        // Pressed on the table.
-        node.feed<Pose>("device", [](std::int64_t k) {
-            return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
-        });
+        press_on_table(node);
         node.feed<bool>("holding", [](std::int64_t k) { return k < 300; });
         node.disconnect_optional().connect("holding");
         node.prepare();
@@ -366,11 +375,7 @@ TEST_CASE("a body that is let go leaves no force on the hand, where nothing stat
 TEST_CASE("a released body leaves no force on the hand where its strength is wired to something that does not fall") {
     for (const char* type : {"quasi_static_coupling", "dynamic_coupling"}) {
         NodeHarness node(type, test::servo);
-        node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
-        node.feed("scene", coupled_scene());
-        node.feed<Pose>("device", [](std::int64_t k) {
-            return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
-        });
+        press_on_table(node);
         node.feed<bool>("holding", [](std::int64_t k) { return k < 300; });
         node.disconnect_optional().connect("holding").feed<double>("strength", 0.5).connect("strength");
         node.prepare();
@@ -388,11 +393,9 @@ TEST_CASE("a coupling gives no force while the pose of its hand is none, and goe
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     for (const char* type : {"quasi_static_coupling", "dynamic_coupling"}) {
         NodeHarness node(type, test::servo);
-        node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
-        node.feed("scene", coupled_scene());
+        press_on_table(node);
         node.feed<Pose>("device", [](std::int64_t k) {
-            if (k >= 300 && k < 400) return Pose{{nan, 0.0, 0.0}, {1, 0, 0, 0}};
-            return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
+            return k >= 300 && k < 400 ? Pose{{nan, 0.0, 0.0}, {1, 0, 0, 0}} : pressed(k);
         });
         node.disconnect_optional();
         node.prepare();
