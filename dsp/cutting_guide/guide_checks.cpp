@@ -79,8 +79,8 @@ std::optional<Taper> taper_at(const geometry::TriangleTree& tree, const std::arr
     // m: from the facet into the solid, and the radius of a ball that replaces a line.
     constexpr double skin = 1e-4 * mm, line = 1e-6 * mm;
     // The normal of a facet without area, as at the corner of two slots, may point into the solid.
-    constexpr double least_area = 1e-3 * mm * mm;
-    if (f.area < least_area) return {};
+    constexpr double min_area = 1e-3 * mm * mm;
+    if (f.area < min_area) return {};
     const auto depth = [&](const Vec3& from, const Vec3& along) {
         const double reach = 2.0 * limit + skin;
         const double part = tree.sweep(from + skin * along, reach * along, line);

@@ -26,7 +26,7 @@ constexpr double bed_cell = 0.5 * mm;  // of the heights of the bed
 constexpr double smoothing = 8.0 * mm;  // of the curve
 constexpr double station_step = 2.0 * mm;
 constexpr double sought_above = 12.0 * mm, sought_below = 12.0 * mm;  // of the curve: where bone is sought
-constexpr double least_part = 8e-9;  // m³
+constexpr double min_part = 8e-9;  // m³
 
 /// A smooth curve along the points of a plate, with the directions out of the bone.
 class PlateCurve {
@@ -361,7 +361,7 @@ MadeTemplate make_template(const TemplateDesign& design, const RunJobs& run) {
         count *= grid.size[static_cast<std::size_t>(axis)];
     }
     if (!(count < 150e6)) throw Error("the template needs too many voxels: a coarser voxel (--voxel)");
-    made.surface = geometry::dual_contour(grid, solid, least_part, run).surface;
+    made.surface = geometry::dual_contour(grid, solid, min_part, run).surface;
     if (made.surface.triangles.empty()) throw Error("nothing is left of the template");
     return made;
 }

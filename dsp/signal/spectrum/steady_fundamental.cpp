@@ -84,9 +84,9 @@ std::vector<MainsComb> mains_among(const std::vector<MainsLine>& lines) {
 
 /// Whether a rate may be that of hum. `beside`: what may be hum among the lines that are no orders of the rate.
 ///
-/// A comb that begins as a family of hum does cannot be told from hum by its orders. Other lines show that it is a
+/// The orders of a comb that begins as a family of hum cannot distinguish it from hum. Other lines show that it is a
 /// machine's if they are hum of a mains that is nearer to its nominal frequency, and measurably not that of the rate:
-/// a record has one mains. A comb at another order of the mains is told from hum by the absence of the first orders, or
+/// a record has one mains. A comb at another order of the mains is distinguished from hum by the absence of the first orders, or
 /// by their frequency.
 bool is_rate_of_hum(double rate, double deviation, std::span<const MainsComb> beside) {
     if (is_order_of(beside, rate, deviation)) return true;

@@ -111,7 +111,7 @@ TEST_CASE("a control point without a position is left out and named") {
               "sites.mrk.json: control point 4 has no position (its status is \"preview\"): left out"});
 }
 
-TEST_CASE("the points of each markup of a file are told apart") {
+TEST_CASE("the points of each markup of a file are distinguished") {
     markup::Markup first, second;
     first.kind = second.kind = markup::Kind::curve;
     first.points.resize(2);

@@ -27,7 +27,7 @@ namespace tactus::analysis {
 
 namespace {
 
-constexpr double least_face = 10e-6;  // m²: fragments with smaller facing areas do not meet
+constexpr double min_facing_area = 10e-6;  // m²: fragments with smaller facing areas do not meet
 constexpr double beside = 25.0 * mm;  // of a fracture: the bone there shows the direction of the line
 constexpr double step = 1.0 * mm, height = 80.0 * mm;  // of the rays that find the fragments below the base
 constexpr int half_length = 70, half_width = 12;  // of their field, in steps
@@ -107,7 +107,7 @@ std::optional<Fracture> fracture_between(const Reduction& all, std::size_t a, st
     const PlacedFragment &first = all.fragments[a], &second = all.fragments[b];
     const auto& points = first.loaded.bone.points;
     const fit::SurfaceGap gap = fit::gap_between(points, first.pose, second.loaded.map, second.pose);
-    if (gap.facing_area < least_face) return {};
+    if (gap.facing_area < min_facing_area) return {};
     Fracture found{a, b, {first.name, second.name, gap.median, 0.0}, 0.0, Vec3(0.0)};
     for (std::size_t n = 0; n < points.size(); ++n)
         if (std::isfinite(gap.distance[n]))
